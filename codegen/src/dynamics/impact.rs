@@ -1,0 +1,223 @@
+//! Passive impacts: eq. 12 (the other foot leaves) and eq. 11 (both feet stay).
+//!
+//! A landing foot j that comes to rest takes an impulse that does no work in motions with foot j at
+//! rest. In those, the generalized momenta before and after are equal: `Aq⁽ʲ⁾ q̇⁺ = P⁽ʲ⁾(Ẋ⁻)`.
+
+use super::kernel::Kernel;
+use super::kinematics::{Vec3, subtract};
+use super::model::{Model, Origin, scaled};
+use super::solve::Factors;
+use crate::expr::{Poly, Var};
+use std::collections::BTreeMap;
+
+/// Momenta conjugate to motions about foot `landing`, of velocities with the platform at `pd`.
+fn momenta_before(model: &mut Model, landing: usize, platform_velocity: &Vec3) -> Vec<Poly> {
+    let q = model.coordinates.q.clone();
+    let about: Vec<Vec3> = model.centres(Origin::Foot(landing));
+    let mut momenta = vec![Poly::zero(); q.len()];
+    for (b, centre) in about.iter().enumerate() {
+        let relative = model.kinematics.bodies[b].com.clone();
+        let mut velocity = model.rate(&relative);
+        for (v, p) in velocity.iter_mut().zip(platform_velocity) {
+            *v += p;
+        }
+        let spin = model.kinematics.bodies[b].spin.clone();
+        let body = model.mechanism.bodies[b].clone();
+        let angular = scaled(&spin, &body.inertia);
+        for (sum, [x, xd, _]) in momenta.iter_mut().zip(&q) {
+            for i in 0..3 {
+                *sum += &(&model.ring.derivative(&centre[i], *x) * &velocity[i]).scaled(body.mass);
+                *sum += &(&model.ring.derivative(&spin[i], *xd) * &angular[i]);
+            }
+        }
+    }
+    for (k, joint) in model.mechanism.joints.iter().enumerate() {
+        momenta[k] += &Poly::from(q[k][1]).scaled(joint.rotor_inertia);
+    }
+    momenta
+}
+
+fn platform_rate(model: &Model) -> Vec3 {
+    let mut v = [Poly::zero(), Poly::zero(), Poly::zero()];
+    for (slot, symbol) in v.iter_mut().zip(&model.coordinates.p) {
+        *slot = symbol[1].into();
+    }
+    v
+}
+
+/// Inertia of motions about foot `leg`.
+fn inertia_about(model: &mut Model, leg: usize) -> Vec<Vec<Poly>> {
+    let q = model.coordinates.q.clone();
+    let momenta = model.momenta(Origin::Foot(leg), &q);
+    let rates = model.q(1);
+    model.jacobian(&momenta, &rates)
+}
+
+/// Impulse on the feet in all: total mass times the change of the mass centre's velocity.
+fn impulse(model: &mut Model, landing: usize, before: &Vec3, after: &BTreeMap<Var, Poly>) -> Vec<Poly> {
+    let com = model.centre_of_mass(Origin::Foot(landing));
+    let rate = model.rate(&com);
+    let mass = model.mechanism.total_mass();
+    let after: Vec<Poly> = model.components(&rate).iter().map(|v| model.ring.substitute(v, after)).collect();
+    after.iter().zip(before).map(|(a, b)| (a - b).scaled(mass)).collect()
+}
+
+/// Velocity of the mass centre when the platform moves at `platform`.
+fn com_velocity(model: &mut Model, platform: &Vec3) -> Vec3 {
+    let com = model.centre_of_mass(Origin::World);
+    let relative = subtract(&com, &model.platform());
+    let rate = model.rate(&relative);
+    [0, 1, 2].map(|i| &rate[i] + &platform[i])
+}
+
+fn with_platform(model: &mut Model, landing: usize, solution: &[Poly]) -> (BTreeMap<Var, Poly>, Vec<Poly>) {
+    let map: BTreeMap<Var, Poly> = model.q(1).into_iter().zip(solution.iter().cloned()).collect();
+    let p = model.foot(landing).map(|x| -&x);
+    let rate = model.rate(&p);
+    let mut xd: Vec<Poly> = model.components(&rate).iter().map(|v| model.ring.substitute(v, &map)).collect();
+    xd.extend(solution.iter().cloned());
+    (map, xd)
+}
+
+/// Kernels of the impact on foot `leg`.
+pub fn kernels(model: &mut Model, leg: usize) -> Vec<Kernel> {
+    let platform = platform_rate(model);
+    let momenta = momenta_before(model, leg, &platform);
+    let inertia = inertia_about(model, leg);
+    let factors = Factors::new(&mut model.ring, &inertia);
+    let solution = factors.solve(&mut model.ring, &momenta);
+    let (map, xd) = with_platform(model, leg, &solution);
+    let before = com_velocity(model, &platform);
+    let impulse = impulse(model, leg, &before, &map);
+    let general = Kernel::new(format!("impact{}", leg + 1), "Passive impact on this foot, the other one free (eq. 12): velocities after, and the impulse.")
+        .input("q", model.q(0))
+        .input("xd", model.x(1))
+        .vector("xd_plus", xd, "Ẋ⁺")
+        .vector("impulse", impulse, "impulse on this foot, N·s");
+    vec![general, touchdown(model, leg)]
+}
+
+/// The same impact as the end of a single support on the other foot, with its Jacobian in (q, q̇⁻).
+fn touchdown(model: &mut Model, leg: usize) -> Kernel {
+    let stance = 1 - leg;
+    let (q, qd) = (model.q(0), model.q(1));
+    let by: Vec<Var> = q.iter().chain(&qd).copied().collect();
+    let p = model.foot(stance).map(|x| -&x);
+    let platform = model.rate(&p);
+    let before = momenta_before(model, leg, &platform);
+    let inertia = inertia_about(model, leg);
+    let factors = Factors::new(&mut model.ring, &inertia);
+    let solution = factors.solve(&mut model.ring, &before);
+
+    // Velocities after as symbols first, so that what depends on them can be differentiated by parts.
+    let plus: Vec<Var> = (0..q.len()).map(|k| model.ring.symbol(format!("plus{k}"))).collect();
+    let rename: BTreeMap<Var, Poly> = qd.iter().copied().zip(plus.iter().map(|v| Poly::from(*v))).collect();
+    let insert: BTreeMap<Var, Poly> = plus.iter().copied().zip(solution.iter().cloned()).collect();
+
+    let coordinates = model.coordinates.q.clone();
+    let momenta = model.momenta(Origin::Foot(leg), &coordinates);
+    let after: Vec<Poly> = momenta.iter().map(|m| model.ring.substitute(m, &rename)).collect();
+    let residual: Vec<Poly> = before.iter().zip(&after).map(|(b, a)| b - a).collect();
+    let partial = model.jacobian(&residual, &by);
+    // Aq ∂q̇⁺/∂w = ∂(P⁻ − Aq q̇⁺)/∂w with q̇⁺ held.
+    let mut columns: Vec<Vec<Poly>> = Vec::new();
+    for w in 0..by.len() {
+        let right: Vec<Poly> = partial.iter().map(|row| model.ring.substitute(&row[w], &insert)).collect();
+        columns.push(factors.solve(&mut model.ring, &right));
+    }
+
+    let com_before = com_velocity(model, &platform);
+    let impulse = impulse(model, leg, &com_before, &rename);
+    let leaving = subtract(&model.foot(stance), &model.foot(leg));
+    let leaving_rate = model.rate(&leaving);
+    let leaving_rate = model.ring.substitute(&leaving_rate[1], &rename);
+    let landing = subtract(&model.foot(leg), &model.foot(stance));
+    let landing_rate = model.rate(&landing)[1].clone();
+
+    let mut outputs = impulse;
+    outputs.push(leaving_rate);
+    outputs.push(landing_rate);
+    let direct = model.jacobian(&outputs, &by);
+    let through = model.jacobian(&outputs, &plus);
+    let mut jacobian: Vec<Vec<Poly>> =
+        (0..q.len()).map(|k| columns.iter().map(|column| column[k].clone()).collect()).collect();
+    for (direct, through) in direct.iter().zip(&through) {
+        let row = (0..by.len())
+            .map(|w| {
+                let mut total = model.ring.substitute(&direct[w], &insert);
+                for (k, partial) in through.iter().enumerate() {
+                    let partial = model.ring.substitute(partial, &insert);
+                    total += &(&partial * &columns[w][k]);
+                }
+                total
+            })
+            .collect();
+        jacobian.push(row);
+    }
+    let mut values: Vec<Poly> = outputs.iter().map(|p| model.ring.substitute(p, &insert)).collect();
+    let landing_velocity = values.pop().unwrap_or_default();
+    let leaving_velocity = values.pop().unwrap_or_default();
+    Kernel::new(
+        format!("touchdown{}", leg + 1),
+        "Impact on this foot at the end of single support on the other (eq. 12), with its Jacobian in (q, q̇⁻): \
+         rows are q̇⁺, the impulse, the leaving foot's vertical velocity after, the landing foot's before.",
+    )
+    .input("q", q)
+    .input("qd", qd)
+    .vector("qd_plus", solution, "q̇⁺, before the legs swap names")
+    .vector("impulse", values, "impulse on the landing foot, N·s")
+    .scalar("leaving", leaving_velocity, "vertical velocity of the leaving foot after, m/s")
+    .scalar("landing", landing_velocity, "vertical velocity of the landing foot before, m/s")
+    .matrix("jacobian", jacobian, "∂(q̇⁺, impulse, leaving, landing)/∂(q, q̇⁻)")
+}
+
+/// Both feet at rest after the impact (eq. 11). Singular where the feet cannot both be loaded
+/// independently: the pivots say so.
+pub fn both_feet(model: &mut Model) -> Kernel {
+    let (landing, other) = (1, 0);
+    let platform = platform_rate(model);
+    let momenta = momenta_before(model, landing, &platform);
+    let inertia = inertia_about(model, landing);
+    let factors = Factors::new(&mut model.ring, &inertia);
+    let free = factors.solve(&mut model.ring, &momenta);
+    let apart = subtract(&model.foot(other), &model.foot(landing));
+    let apart = model.components(&apart);
+    let jacobian = model.jacobian(&apart, &model.q(0));
+    let responses: Vec<Vec<Poly>> = jacobian.iter().map(|row| factors.solve(&mut model.ring, row)).collect();
+    let product = |row: &[Poly], x: &[Poly]| {
+        let mut sum = Poly::zero();
+        for (a, b) in row.iter().zip(x) {
+            sum += &(a * b);
+        }
+        sum
+    };
+    let schur: Vec<Vec<Poly>> =
+        jacobian.iter().map(|row| responses.iter().map(|x| model.ring.bind(product(row, x))).collect()).collect();
+    let right: Vec<Poly> = jacobian.iter().map(|row| -&product(row, &free)).collect();
+    let schur_factors = Factors::new(&mut model.ring, &schur);
+    let impulse_other = schur_factors.solve(&mut model.ring, &right);
+    let solution: Vec<Poly> = free
+        .iter()
+        .enumerate()
+        .map(|(k, u)| {
+            let mut sum = u.clone();
+            for (response, i) in responses.iter().zip(&impulse_other) {
+                sum += &(&response[k] * i);
+            }
+            model.ring.bind(sum)
+        })
+        .collect();
+    let (map, xd) = with_platform(model, landing, &solution);
+    let before = com_velocity(model, &platform);
+    let total = impulse(model, landing, &before, &map);
+    let impulse_landing = total.iter().zip(&impulse_other).map(|(t, o)| t - o).collect();
+    let scale = (0..schur.len()).map(|k| schur[k][k].clone()).collect();
+    Kernel::new("impact_both", "Passive impact with both feet at rest after (eq. 11).")
+        .input("q", model.q(0))
+        .input("xd", model.x(1))
+        .vector("xd_plus", xd, "Ẋ⁺")
+        .vector("impulse1", impulse_other, "impulse on foot 1, N·s")
+        .vector("impulse2", impulse_landing, "impulse on foot 2, N·s")
+        .vector("pivots", schur_factors.pivots, "pivots of the feet's mutual compliance: one that is tiny beside `scale` means a singular case")
+        .vector("scale", scale, "the compliance's diagonal")
+}

@@ -1,0 +1,69 @@
+//! A kernel: inputs, outputs, and what they mean.
+
+use crate::expr::{Poly, Var};
+
+/// A group of expressions evaluated together; becomes one generated function.
+#[derive(Clone, Debug)]
+pub struct Kernel {
+    pub name: String,
+    /// What it computes, with equation numbers, units and frame.
+    pub doc: String,
+    pub inputs: Vec<Input>,
+    pub outputs: Vec<Output>,
+}
+
+#[derive(Clone, Debug)]
+pub struct Input {
+    pub name: &'static str,
+    pub symbols: Vec<Var>,
+    /// A single number rather than an array.
+    pub scalar: bool,
+}
+
+#[derive(Clone, Debug)]
+pub struct Output {
+    pub name: &'static str,
+    pub shape: Shape,
+    /// Row-major.
+    pub values: Vec<Poly>,
+    pub doc: &'static str,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    Scalar,
+    Vector(usize),
+    Matrix(usize, usize),
+}
+
+impl Kernel {
+    pub fn new(name: impl Into<String>, doc: impl Into<String>) -> Kernel {
+        Kernel { name: name.into(), doc: doc.into(), inputs: Vec::new(), outputs: Vec::new() }
+    }
+
+    pub fn input(mut self, name: &'static str, symbols: Vec<Var>) -> Kernel {
+        self.inputs.push(Input { name, symbols, scalar: false });
+        self
+    }
+
+    pub fn scalar_input(mut self, name: &'static str, symbol: Var) -> Kernel {
+        self.inputs.push(Input { name, symbols: vec![symbol], scalar: true });
+        self
+    }
+
+    pub fn scalar(mut self, name: &'static str, value: Poly, doc: &'static str) -> Kernel {
+        self.outputs.push(Output { name, shape: Shape::Scalar, values: vec![value], doc });
+        self
+    }
+
+    pub fn vector(mut self, name: &'static str, values: Vec<Poly>, doc: &'static str) -> Kernel {
+        self.outputs.push(Output { name, shape: Shape::Vector(values.len()), values, doc });
+        self
+    }
+
+    pub fn matrix(mut self, name: &'static str, rows: Vec<Vec<Poly>>, doc: &'static str) -> Kernel {
+        let shape = Shape::Matrix(rows.len(), rows.first().map_or(0, Vec::len));
+        self.outputs.push(Output { name, shape, values: rows.into_iter().flatten().collect(), doc });
+        self
+    }
+}

@@ -1,0 +1,178 @@
+//! A mechanism with its symbols and kinematics: what all kernels are derived from.
+
+use super::kinematics::{Coordinates, Kinematics, Vec3, dot, subtract};
+use crate::expr::{Poly, Ring, Var};
+use crate::mechanism::Mechanism;
+use std::collections::BTreeMap;
+
+/// Symbols, kinematics and mechanism of one gait.
+pub struct Model {
+    pub mechanism: Mechanism,
+    pub ring: Ring,
+    pub coordinates: Coordinates,
+    pub kinematics: Kinematics,
+}
+
+/// Which point the positions of the bodies are measured from.
+#[derive(Clone, Copy)]
+pub enum Origin {
+    /// The world's: positions contain p.
+    World,
+    /// The foot of a leg, taken to be at rest: p drops out.
+    Foot(usize),
+}
+
+impl Model {
+    pub fn new(mechanism: &Mechanism) -> Model {
+        let mut ring = Ring::new();
+        let coordinates = Coordinates::new(&mut ring, mechanism);
+        let kinematics = Kinematics::new(&mut ring, mechanism, &coordinates);
+        Model { mechanism: mechanism.clone(), ring, coordinates, kinematics }
+    }
+
+    /// p as a vector (z = 0 where the platform does not move sideways).
+    pub fn platform(&self) -> Vec3 {
+        let mut p = [Poly::zero(), Poly::zero(), Poly::zero()];
+        for (slot, symbol) in p.iter_mut().zip(&self.coordinates.p) {
+            *slot = symbol[0].into();
+        }
+        p
+    }
+
+    /// Position of the foot of `leg` relative to the platform's mass centre.
+    pub fn foot(&self, leg: usize) -> Vec3 {
+        self.kinematics.feet[leg].clone()
+    }
+
+    /// Mass centres of all bodies from `origin`.
+    pub fn centres(&self, origin: Origin) -> Vec<Vec3> {
+        let shift = match origin {
+            Origin::World => self.platform().map(|x| -&x),
+            Origin::Foot(leg) => self.foot(leg),
+        };
+        self.kinematics.bodies.iter().map(|b| planar(self, subtract(&b.com, &shift))).collect()
+    }
+
+    /// Mass centre of the whole robot from `origin`.
+    pub fn centre_of_mass(&self, origin: Origin) -> Vec3 {
+        let mut com = [Poly::zero(), Poly::zero(), Poly::zero()];
+        let total = self.mechanism.total_mass();
+        for (body, centre) in self.mechanism.bodies.iter().zip(self.centres(origin)) {
+            for (sum, c) in com.iter_mut().zip(&centre) {
+                *sum += &c.scaled(body.mass / total);
+            }
+        }
+        com
+    }
+
+    pub fn rate(&mut self, v: &Vec3) -> Vec3 {
+        [0, 1, 2].map(|i| self.ring.time_derivative(&v[i]))
+    }
+
+    /// Generalized momentum `∂T/∂Ẋk` for each of `coordinates`.
+    pub fn momenta(&mut self, origin: Origin, coordinates: &[[Var; 3]]) -> Vec<Poly> {
+        let mut momenta = vec![Poly::zero(); coordinates.len()];
+        let centres = self.centres(origin);
+        for (b, centre) in centres.iter().enumerate() {
+            let velocity = self.rate(centre);
+            let spin = self.kinematics.bodies[b].spin.clone();
+            let angular = scaled(&spin, &self.mechanism.bodies[b].inertia);
+            self.project(coordinates, b, centre, &velocity, &angular, &mut momenta);
+        }
+        self.add_rotors(coordinates, 1, &mut momenta);
+        momenta
+    }
+
+    /// Generalized force `d/dt ∂T/∂Ẋk − ∂T/∂Xk + ∂V/∂Xk` for each of `coordinates`.
+    pub fn generalized_forces(&mut self, origin: Origin, coordinates: &[[Var; 3]]) -> Vec<Poly> {
+        let mut forces = vec![Poly::zero(); coordinates.len()];
+        let centres = self.centres(origin);
+        for (b, centre) in centres.iter().enumerate() {
+            let velocity = self.rate(centre);
+            let mut acceleration = self.rate(&velocity);
+            acceleration[1] += &Poly::constant(self.mechanism.gravity);
+            let spin = self.kinematics.bodies[b].spin.clone();
+            let inertia = self.mechanism.bodies[b].inertia;
+            let angular = scaled(&spin, &inertia);
+            let moment = super::kinematics::add(&self.rate(&angular), &super::kinematics::cross(&spin, &angular));
+            self.project(coordinates, b, centre, &acceleration, &moment, &mut forces);
+        }
+        self.add_rotors(coordinates, 2, &mut forces);
+        forces
+    }
+
+    /// Adds `m ∂r/∂X·linear + ∂ω/∂Ẋ·angular` of body `b`.
+    fn project(&self, coordinates: &[[Var; 3]], b: usize, centre: &Vec3, linear: &Vec3, angular: &Vec3, sums: &mut [Poly]) {
+        let mass = self.mechanism.bodies[b].mass;
+        let spin = &self.kinematics.bodies[b].spin;
+        for (sum, [x, xd, _]) in sums.iter_mut().zip(coordinates) {
+            let partial_velocity = [0, 1, 2].map(|i| self.ring.derivative(&centre[i], *x));
+            *sum += &dot(&partial_velocity, linear).scaled(mass);
+            let partial_spin = [0, 1, 2].map(|i| self.ring.derivative(&spin[i], *xd));
+            *sum += &dot(&partial_spin, angular);
+        }
+    }
+
+    /// Rotors turn with their joints: `J n² q̇` (order 1) or `J n² q̈` (order 2).
+    fn add_rotors(&self, coordinates: &[[Var; 3]], order: usize, sums: &mut [Poly]) {
+        for (joint, symbols) in self.mechanism.joints.iter().zip(&self.coordinates.q) {
+            if let Some(k) = coordinates.iter().position(|c| c[0] == symbols[0]) {
+                sums[k] += &Poly::from(symbols[order]).scaled(joint.rotor_inertia);
+            }
+        }
+    }
+
+    /// Matrix of partial derivatives.
+    pub fn jacobian(&self, values: &[Poly], by: &[Var]) -> Vec<Vec<Poly>> {
+        values.iter().map(|v| by.iter().map(|s| self.ring.derivative(v, *s)).collect()).collect()
+    }
+
+    /// The expression with these symbols set to zero.
+    pub fn without(&mut self, p: &Poly, symbols: &[Var]) -> Poly {
+        let map = symbols.iter().map(|s| (*s, Poly::zero())).collect::<BTreeMap<_, _>>();
+        self.ring.substitute(p, &map)
+    }
+
+    /// Components that reactions and feet have: x, y and, for a lateral gait, z.
+    pub fn components(&self, v: &Vec3) -> Vec<Poly> {
+        v[..self.mechanism.positions()].to_vec()
+    }
+
+    pub fn symbols(&self, order: usize) -> (Vec<Var>, Vec<Var>) {
+        let of = |list: &[[Var; 3]]| list.iter().map(|c| c[order]).collect();
+        (of(&self.coordinates.p), of(&self.coordinates.q))
+    }
+
+    /// All of X (order 0), Ẋ (1) or Ẍ (2).
+    pub fn x(&self, order: usize) -> Vec<Var> {
+        self.coordinates.all().iter().map(|c| c[order]).collect()
+    }
+
+    /// All of q, q̇ or q̈.
+    pub fn q(&self, order: usize) -> Vec<Var> {
+        self.coordinates.q.iter().map(|c| c[order]).collect()
+    }
+
+    /// The prescribed coordinates Q, Q̇ or Q̈.
+    pub fn prescribed(&self, order: usize) -> Vec<Var> {
+        self.mechanism.prescribed().iter().map(|i| self.coordinates.q[*i][order]).collect()
+    }
+
+    /// β, β̇ or β̈.
+    pub fn unactuated(&self, order: usize) -> Var {
+        self.coordinates.q[self.mechanism.unactuated][order]
+    }
+}
+
+/// Diagonal inertia times a vector in the body's axes.
+pub fn scaled(v: &Vec3, inertia: &[f64; 3]) -> Vec3 {
+    [0, 1, 2].map(|i| v[i].scaled(inertia[i]))
+}
+
+/// In a planar gait all bodies move in the sagittal plane: z does not matter.
+fn planar(model: &Model, mut v: Vec3) -> Vec3 {
+    if !model.mechanism.lateral {
+        v[2] = Poly::zero();
+    }
+    v
+}

@@ -1,0 +1,231 @@
+//! Single support on one leg: the model reduced to q by the stance foot at rest (eq. 6), angular
+//! momentum and its rate (eq. 8, 9), β̈ (eq. 10), forward and inverse dynamics.
+//!
+//! With positions measured from the stance foot, p drops out; its reaction does no work there, so
+//! the generalized forces of q are the torques alone: `Aq q̈ + Hq = Dq Γ`.
+
+use super::kernel::Kernel;
+use super::kinematics::subtract;
+use super::model::{Model, Origin};
+use super::solve::Factors;
+use crate::expr::{Poly, Var};
+use crate::spec::Rotation;
+use std::collections::BTreeMap;
+
+/// The reduced model of one stance leg, as expressions.
+pub struct Stance {
+    /// Generalized forces of q: linear in q̈.
+    pub forces: Vec<Poly>,
+    /// Aq (eq. 6).
+    pub inertia: Vec<Vec<Poly>>,
+    /// Hq (eq. 6).
+    pub bias: Vec<Poly>,
+    /// Reaction at the stance foot, N.
+    pub reaction: Vec<Poly>,
+    /// σ = f1 β̇ + f2 (eq. 8).
+    pub sigma: Poly,
+    pub f1: Poly,
+    pub f2: Poly,
+    /// Moment of gravity about the stance foot: σ̇ (eq. 9).
+    pub gravity_moment: Poly,
+    /// Lever arm c (eq. 9).
+    pub c: Poly,
+    /// Balance along the free direction: zero in every motion (eq. 10).
+    pub balance: Poly,
+}
+
+impl Stance {
+    pub fn new(model: &mut Model, leg: usize) -> Stance {
+        let origin = Origin::Foot(leg);
+        let q = model.coordinates.q.clone();
+        let (qd, qdd) = (model.q(1), model.q(2));
+        let forces = model.generalized_forces(origin, &q);
+        let momenta = model.momenta(origin, &q);
+        let free = model.mechanism.free_direction();
+        let sum = |list: &[Poly]| {
+            let mut total = Poly::zero();
+            for k in &free {
+                total += &list[*k];
+            }
+            total
+        };
+        let (balance, sigma) = (sum(&forces), sum(&momenta));
+        let inertia = model.jacobian(&forces, &qdd);
+        let bias = forces.iter().map(|f| model.without(f, &qdd)).collect();
+        let beta_rate = model.unactuated(1);
+        let f1 = model.ring.derivative(&sigma, beta_rate);
+        let f2 = model.without(&sigma, &[beta_rate]);
+        let still: Vec<Var> = qd.iter().chain(&qdd).copied().collect();
+        let gravity_moment = -&model.without(&balance, &still);
+        let com = model.centre_of_mass(origin);
+        let c = if model.mechanism.rotation == Rotation::Roll { com[2].clone() } else { com[0].clone() };
+        let velocity = model.rate(&com);
+        let mut acceleration = model.rate(&velocity);
+        acceleration[1] += &Poly::constant(model.mechanism.gravity);
+        let mass = model.mechanism.total_mass();
+        let reaction = model.components(&acceleration).iter().map(|a| a.scaled(mass)).collect();
+        Stance { forces, inertia, bias, reaction, sigma, f1, f2, gravity_moment, c, balance }
+    }
+}
+
+/// p of the platform when the stance foot is at the origin, with its time derivatives up to `order`.
+fn platform_motion(model: &mut Model, leg: usize) -> [Vec<Poly>; 3] {
+    let p = model.foot(leg).map(|x| -&x);
+    let v = model.rate(&p);
+    let a = model.rate(&v);
+    [model.components(&p), model.components(&v), model.components(&a)]
+}
+
+pub fn kernels(model: &mut Model, leg: usize) -> Vec<Kernel> {
+    let stance = Stance::new(model, leg);
+    let name = |what: &str| format!("{what}{}", leg + 1);
+    let (q, qd, qdd) = (model.q(0), model.q(1), model.q(2));
+    let [position, velocity, acceleration] = platform_motion(model, leg);
+    let mut kernels = vec![
+        Kernel::new(name("platform_velocity"), "ṗ with the stance foot at rest (eq. 3), m/s.")
+            .input("q", q.clone())
+            .input("qd", qd.clone())
+            .vector("pd", velocity, "ṗ"),
+        Kernel::new(name("momentum_terms"), "Angular momentum about the stance foot S: σ = f1 β̇ + f2 (eq. 8), σ̇ (eq. 9) and its lever arm c.")
+            .input("q", q.clone())
+            .input("qd", qd.clone())
+            .scalar("f1", stance.f1.clone(), "f1(q), kg·m²")
+            .scalar("f2", stance.f2.clone(), "f2(q, Q̇), kg·m²/s")
+            .scalar("sigma", stance.sigma.clone(), "σ, kg·m²/s")
+            .scalar("c", stance.c.clone(), "horizontal distance from S to the mass centre, m")
+            .scalar("sigmadot", stance.gravity_moment.clone(), "moment of gravity about S, N·m"),
+        Kernel::new(name("reduced"), "Reduced model Aq q̈ + Hq = Dq Γ of eq. 6 (Dq is constant: see the mechanism's torque map).")
+            .input("q", q.clone())
+            .input("qd", qd.clone())
+            .matrix("a", stance.inertia.clone(), "Aq")
+            .vector("h", stance.bias.clone(), "Hq"),
+    ];
+    kernels.push(forward(model, &stance, leg, &acceleration));
+    kernels.push(inverse(model, &stance, leg, &acceleration));
+    kernels.push(momentum(model, &stance, leg));
+    kernels.push(inverse_with_jacobian(model, &stance, leg));
+
+    let swing = subtract(&model.foot(1 - leg), &model.foot(leg));
+    let swing_position = model.components(&swing);
+    let swing_rate = model.rate(&swing);
+    let swing_velocity = model.components(&swing_rate);
+    kernels.push(
+        Kernel::new(name("placement"), "Platform's mass centre and swing foot from the stance foot, m, with Jacobians in q.")
+            .input("q", q.clone())
+            .vector("p", position.clone(), "platform's mass centre")
+            .vector("swing", swing_position.clone(), "swing foot")
+            .matrix("p_q", model.jacobian(&position, &q), "∂p/∂q")
+            .matrix("swing_q", model.jacobian(&swing_position, &q), "∂swing/∂q"),
+    );
+    let by: Vec<Var> = q.iter().chain(&qd).copied().collect();
+    kernels.push(
+        Kernel::new(name("swing_velocity"), "Velocity of the swing foot, m/s, with its Jacobian in (q, q̇).")
+            .input("q", q)
+            .input("qd", qd)
+            .vector("v", swing_velocity.clone(), "velocity")
+            .matrix("v_w", model.jacobian(&swing_velocity, &by), "∂v/∂(q, q̇)"),
+    );
+    debug_assert_eq!(qdd.len(), model.mechanism.orientations());
+    kernels
+}
+
+/// σ and its gradient: where the integration of (β, σ) starts.
+fn momentum(model: &mut Model, stance: &Stance, leg: usize) -> Kernel {
+    let (q, qd) = (model.q(0), model.q(1));
+    let by: Vec<Var> = q.iter().chain(&qd).copied().collect();
+    let gradient = model.jacobian(std::slice::from_ref(&stance.sigma), &by).remove(0);
+    Kernel::new(format!("momentum{}", leg + 1), "σ about the stance foot (eq. 8) and its gradient in (q, q̇).")
+        .input("q", q)
+        .input("qd", qd)
+        .scalar("sigma", stance.sigma.clone(), "σ, kg·m²/s")
+        .vector("sigma_w", gradient, "∂σ/∂(q, q̇)")
+}
+
+fn forward(model: &mut Model, stance: &Stance, leg: usize, platform: &[Poly]) -> Kernel {
+    let independent = model.mechanism.independent_torques();
+    let torques: Vec<Var> = independent.iter().map(|j| model.ring.symbol(format!("gamma{}", j + 1))).collect();
+    let map = model.mechanism.torque_map();
+    let right: Vec<Poly> = map
+        .iter()
+        .zip(&stance.bias)
+        .map(|(row, bias)| {
+            let mut sum = -bias;
+            for (share, torque) in row.iter().zip(&torques) {
+                sum += &Poly::from(*torque).scaled(*share);
+            }
+            sum
+        })
+        .collect();
+    let factors = Factors::new(&mut model.ring, &stance.inertia);
+    let solution = factors.solve(&mut model.ring, &right);
+    let map: BTreeMap<Var, Poly> = model.q(2).into_iter().zip(solution.iter().cloned()).collect();
+    let mut xdd: Vec<Poly> = platform.iter().map(|a| model.ring.substitute(a, &map)).collect();
+    xdd.extend(solution);
+    let reaction = stance.reaction.iter().map(|f| model.ring.substitute(f, &map)).collect();
+    Kernel::new(format!("forward{}", leg + 1), "Forward dynamics in single support: Ẍ and the reaction F from the independent torques Γ (eq. 5 with eq. 4).")
+        .input("q", model.q(0))
+        .input("qd", model.q(1))
+        .input("gamma", torques)
+        .vector("xdd", xdd, "Ẍ")
+        .vector("f", reaction, "reaction at the stance foot, N")
+}
+
+/// β̈ as a bound atom (eq. 10): the balance is linear in it.
+fn free_acceleration(model: &mut Model, stance: &Stance) -> Poly {
+    let beta = model.unactuated(2);
+    let rest = model.without(&stance.balance, &[beta]);
+    let rest = model.ring.bind(rest);
+    let f1 = model.ring.bind(stance.f1.clone());
+    let over_f1 = model.ring.reciprocal(f1);
+    model.ring.bind(-&(&rest * &over_f1))
+}
+
+fn inverse(model: &mut Model, stance: &Stance, leg: usize, platform: &[Poly]) -> Kernel {
+    let beta = free_acceleration(model, stance);
+    let map = BTreeMap::from([(model.unactuated(2), beta)]);
+    let mut xdd: Vec<Poly> = platform.iter().map(|a| model.ring.substitute(a, &map)).collect();
+    let q = model.q(2);
+    xdd.extend(q.iter().map(|s| model.ring.substitute(&(*s).into(), &map)));
+    let joints = model.mechanism.joints.len();
+    let torques = stance.forces[..joints].iter().map(|f| model.ring.substitute(f, &map)).collect();
+    let reaction = stance.reaction.iter().map(|f| model.ring.substitute(f, &map)).collect();
+    Kernel::new(format!("inverse{}", leg + 1), "Inverse dynamics in single support: full Ẍ (β̈ by eq. 10), the torque of every joint and the reaction, from Q̈.")
+        .input("q", model.q(0))
+        .input("qd", model.q(1))
+        .input("actuated_dd", model.prescribed(2))
+        .vector("xdd", xdd, "Ẍ")
+        .vector("gamma", torques, "torque of every joint, N·m")
+        .vector("f", reaction, "reaction at the stance foot, N")
+}
+
+/// What the optimizer evaluates at every instant: outputs and Jacobian, β̈ treated as independent.
+///
+/// The caller eliminates β̈ with the balance row: δβ̈ = −(∂balance/∂(q, q̇, Q̈))·δ / f1.
+fn inverse_with_jacobian(model: &mut Model, stance: &Stance, leg: usize) -> Kernel {
+    let beta = free_acceleration(model, stance);
+    let map = BTreeMap::from([(model.unactuated(2), beta.clone())]);
+    let joints = model.mechanism.joints.len();
+    let outputs: Vec<Poly> =
+        stance.forces[..joints].iter().chain(&stance.reaction).chain([&stance.balance]).cloned().collect();
+    let by: Vec<Var> = [model.q(0), model.q(1), model.q(2)].concat();
+    let jacobian: Vec<Vec<Poly>> = model
+        .jacobian(&outputs, &by)
+        .iter()
+        .map(|row| row.iter().map(|p| model.ring.substitute(p, &map)).collect())
+        .collect();
+    let mut values: Vec<Poly> = outputs.iter().map(|p| model.ring.substitute(p, &map)).collect();
+    values.pop();
+    let reaction = values.split_off(joints);
+    Kernel::new(
+        format!("inverse_jacobian{}", leg + 1),
+        "Inverse dynamics in single support with its Jacobian in (q, q̇, q̈), β̈ taken as an input of its own: \
+         rows are the torques of all joints, the reaction, and the balance of eq. 10.",
+    )
+    .input("q", model.q(0))
+    .input("qd", model.q(1))
+    .input("actuated_dd", model.prescribed(2))
+    .scalar("beta_dd", beta, "β̈, rad/s² (eq. 10)")
+    .vector("gamma", values, "torque of every joint, N·m")
+    .vector("f", reaction, "reaction at the stance foot, N")
+    .matrix("jacobian", jacobian, "∂(Γ, F, balance)/∂(q, q̇, q̈)")
+}

@@ -1,0 +1,87 @@
+//! The mechanism's numbers as a static value of the runtime's types.
+
+use super::function::{Function, base_name, ident};
+use crate::mechanism::Mechanism;
+use crate::spec::{HalfSteps, Rotation};
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+
+fn float(value: f64) -> TokenStream {
+    let literal = Literal::f64_unsuffixed(value.abs());
+    if value.is_sign_negative() && value != 0.0 { quote!(-#literal) } else { quote!(#literal) }
+}
+
+fn floats(values: &[f64]) -> TokenStream {
+    let values = values.iter().map(|v| float(*v));
+    quote!([#(#values),*])
+}
+
+pub fn description(m: &Mechanism, functions: &[Function], runtime: &TokenStream) -> TokenStream {
+    let bodies = m.bodies.iter().map(|b| {
+        let (name, axis) = (&b.name, super::super::dynamics::axis_index(b.axis));
+        let parent = option(b.parent);
+        let coordinate = option(b.coordinate);
+        let (offset, mass, com, inertia) = (floats(&b.offset), float(b.mass), floats(&b.com), floats(&b.inertia));
+        quote! {
+            #runtime::Body { name: #name, parent: #parent, coordinate: #coordinate, axis: #axis,
+                offset: #offset, mass: #mass, com: #com, inertia: #inertia }
+        }
+    });
+    let joints = m.joints.iter().map(|j| {
+        let name = &j.name;
+        let (range, gear) = (floats(&j.range), float(j.gear));
+        let (torque, unloaded, loaded) = (float(j.max_torque), float(j.unloaded_speed), float(j.loaded_speed));
+        let rotor = float(j.rotor_inertia);
+        quote! {
+            #runtime::Joint { name: #name, range: #range, gear: #gear, max_torque: #torque,
+                unloaded_speed: #unloaded, loaded_speed: #loaded, rotor_inertia: #rotor }
+        }
+    });
+    let legs = m.legs.iter().map(|l| {
+        let (start, end, body, foot) = (l.joints.start, l.joints.end, l.foot_body, floats(&l.foot));
+        quote!(#runtime::Leg { first_joint: #start, end_joint: #end, foot_body: #body, foot: #foot })
+    });
+    let rotation = ident(match m.rotation {
+        Rotation::None => "None",
+        Rotation::Pitch => "Pitch",
+        Rotation::Roll => "Roll",
+    });
+    let half_steps = ident(match m.half_steps {
+        HalfSteps::Mirrored => "Mirrored",
+        HalfSteps::Distinct => "Distinct",
+    });
+    let early = [0, 1].map(|leg| {
+        let name = format!("early{}", leg + 1);
+        functions.iter().find(|f| f.kernel.name == name).map_or(0, |f| f.kernel.outputs[0].values.len())
+    });
+    let operations = functions.iter().map(|f| {
+        let (name, o) = (&f.kernel.name, f.program.operations());
+        let (flops, divisions, sincos) = (o.flops, o.divisions, o.sincos);
+        debug_assert!(!base_name(name).0.is_empty());
+        quote!(#runtime::Operations { kernel: #name, flops: #flops, divisions: #divisions, sincos: #sincos })
+    });
+    let (gait, robot) = (&m.gait, &m.robot);
+    let (gravity, lateral, order) = (float(m.gravity), m.lateral, m.polynomial_order);
+    let unactuated = m.unactuated;
+    let l = &m.limits;
+    let (friction, force, clearance) = (float(l.friction), float(l.min_vertical_force), float(l.swing_clearance));
+    let duration = floats(&l.half_step_duration);
+    quote! {
+        #runtime::Description {
+            gait: #gait, robot: #robot, gravity: #gravity, lateral: #lateral,
+            rotation: #runtime::Rotation::#rotation, half_steps: #runtime::HalfSteps::#half_steps,
+            bodies: &[#(#bodies),*], joints: &[#(#joints),*], legs: [#(#legs),*],
+            unactuated: #unactuated, polynomial_order: #order, early: [#(#early),*],
+            limits: #runtime::Limits { friction: #friction, min_vertical_force: #force,
+                swing_clearance: #clearance, half_step_duration: #duration },
+            operations: &[#(#operations),*],
+        }
+    }
+}
+
+fn option(value: Option<usize>) -> TokenStream {
+    match value {
+        Some(v) => quote!(Some(#v)),
+        None => quote!(None),
+    }
+}

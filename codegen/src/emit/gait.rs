@@ -1,0 +1,137 @@
+//! One generated module per gait, and the registry of all.
+
+use super::description::description;
+use super::function::{Function, base_name, ident};
+use super::{MATH, module_name, type_name};
+use crate::dynamics::{Kernel, Shape, kernels};
+use crate::mechanism::Mechanism;
+use proc_macro2::TokenStream;
+use quote::quote;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Source of one gait's module. `runtime` is the path of the module with the `Gait` trait.
+///
+/// # Errors
+/// If what was generated is not Rust: a defect of the generator.
+pub fn gait_source(mechanism: &Mechanism, runtime: &str, origin: &str) -> Result<String, String> {
+    let (model, kernels) = kernels(mechanism);
+    let functions: Vec<Function> = kernels.iter().map(|k| Function::new(&model.ring, k)).collect();
+    let mut structs = BTreeSet::new();
+    let mut items = TokenStream::new();
+    for function in &functions {
+        if let Some((name, source)) = function.output_struct() {
+            if structs.insert(name) {
+                items.extend(source);
+            }
+        }
+        items.extend(function.source());
+    }
+    let runtime: TokenStream = runtime.parse().map_err(|e| format!("`{runtime}` is not a path: {e}"))?;
+    let name = ident(&type_name(&mechanism.gait));
+    let doc = format!(" The {} of `{}`.", mechanism.gait, mechanism.robot);
+    let description = description(mechanism, &functions, &runtime);
+    let methods = methods(&functions);
+    let file = quote! {
+        use super::math;
+        #items
+        #[doc = #doc]
+        #[derive(Clone, Copy, Debug, Default)]
+        pub struct #name;
+        #[doc = " What the gait is made of, in numbers."]
+        pub static DESCRIPTION: #runtime::Description = #description;
+        impl #runtime::Gait for #name {
+            fn description(&self) -> &'static #runtime::Description { &DESCRIPTION }
+            #methods
+        }
+    };
+    let parsed = syn::parse2::<syn::File>(file).map_err(|e| format!("generated code does not parse: {e}"))?;
+    Ok(format!("// {origin}\n{}", prettyplease::unparse(&parsed)))
+}
+
+/// Source of the module that holds all gaits of a build.
+pub fn registry_source(gaits: &[String], runtime: &str, origin: &str) -> String {
+    let mut source = format!("// {origin}\n/// Elementary functions with pinned results.\npub mod math {{\n{MATH}\n}}\n");
+    for gait in gaits {
+        let module = module_name(gait);
+        source += &format!(
+            "/// Generated dynamics of the {gait}.\n#[rustfmt::skip]\n#[allow(clippy::all, clippy::pedantic)]\n\
+             pub mod {module} {{\n    include!(concat!(env!(\"OUT_DIR\"), \"/{module}.rs\"));\n}}\n"
+        );
+    }
+    source += &format!("/// All gaits of this build.\npub static GAITS: &[&dyn {runtime}::Gait] = &[");
+    for gait in gaits {
+        source += &format!("&{}::{}, ", module_name(gait), type_name(gait));
+    }
+    source += "];\n";
+    source
+}
+
+/// Trait methods: per kernel one that takes slices and writes all outputs one after another.
+fn methods(functions: &[Function]) -> TokenStream {
+    let mut by_base: BTreeMap<&str, Vec<&Kernel>> = BTreeMap::new();
+    let mut order = Vec::new();
+    for function in functions {
+        let (base, _) = base_name(&function.kernel.name);
+        let list = by_base.entry(base).or_default();
+        if list.is_empty() {
+            order.push(base);
+        }
+        list.push(function.kernel);
+    }
+    let mut methods = TokenStream::new();
+    for base in order {
+        let (name, twins) = (ident(base), &by_base[base]);
+        let per_leg = base_name(&twins[0].name).1;
+        let leg = per_leg.then(|| quote!(leg: usize,));
+        let parameters = twins[0].inputs.iter().map(|i| {
+            let name = ident(i.name);
+            if i.scalar { quote!(#name: f64) } else { quote!(#name: &[f64]) }
+        });
+        let calls: Vec<TokenStream> = twins.iter().map(|k| call(k)).collect();
+        let body = match calls.as_slice() {
+            [one] => one.clone(),
+            [first, second, ..] => quote!(if leg == 0 { #first } else { #second }),
+            [] => TokenStream::new(),
+        };
+        methods.extend(quote! {
+            #[inline]
+            fn #name(&self, #leg #(#parameters,)* out: &mut [f64]) { #body }
+        });
+    }
+    methods
+}
+
+/// A call with checked lengths; outputs that do not fit the inputs become NaN rather than a panic.
+fn call(kernel: &Kernel) -> TokenStream {
+    let function = ident(&kernel.name);
+    let arrays: Vec<_> = kernel.inputs.iter().filter(|i| !i.scalar).map(|i| ident(i.name)).collect();
+    let arguments = kernel.inputs.iter().map(|i| ident(i.name));
+    let write = |value: TokenStream, shape: Shape| match shape {
+        Shape::Scalar => quote!(core::slice::from_ref(&#value)),
+        Shape::Vector(_) => quote!(#value.as_slice()),
+        Shape::Matrix(..) => quote!(#value.as_flattened()),
+    };
+    let pieces: Vec<TokenStream> = match kernel.outputs.as_slice() {
+        [one] => vec![write(quote!(r), one.shape)],
+        several => several
+            .iter()
+            .map(|o| {
+                let field = ident(o.name);
+                write(quote!(r.#field), o.shape)
+            })
+            .collect(),
+    };
+    quote! {
+        let (#(Some(#arrays),)*) = (#(#arrays.first_chunk(),)*) else {
+            out.fill(f64::NAN);
+            return;
+        };
+        let r = #function(#(#arguments),*);
+        let mut rest = out;
+        for piece in [#(#pieces),*] {
+            let Some((head, tail)) = rest.split_at_mut_checked(piece.len()) else { return };
+            head.copy_from_slice(piece);
+            rest = tail;
+        }
+    }
+}

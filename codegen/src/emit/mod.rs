@@ -1,0 +1,36 @@
+//! Rust source from programs: one documented function per kernel, one file per gait.
+//!
+//! The functions are straight lines of `let`s over named values: no allocation, no indexing, no
+//! branch. Long ones are cut into nested blocks, because rustc's debug information does not survive
+//! thousands of bindings in one scope.
+
+mod description;
+mod function;
+mod gait;
+
+pub use gait::{gait_source, registry_source};
+
+/// The pinned sine and cosine, as source: part of every generated module.
+pub const MATH: &str = include_str!("../../support/math.rs");
+
+/// `trot` → `Trot`.
+pub fn type_name(name: &str) -> String {
+    let mut result = String::new();
+    let mut upper = true;
+    for c in name.chars() {
+        if c.is_ascii_alphanumeric() {
+            result.extend(if upper { c.to_uppercase().collect::<Vec<_>>() } else { vec![c] });
+        }
+        upper = !c.is_ascii_alphanumeric();
+    }
+    result
+}
+
+/// A name as a Rust identifier: lower case, `_` for everything else.
+pub fn module_name(name: &str) -> String {
+    let mut result: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' }).collect();
+    if result.starts_with(|c: char| c.is_ascii_digit()) || result.is_empty() {
+        result.insert(0, '_');
+    }
+    result
+}

@@ -1,0 +1,13 @@
+//! Symbolic expressions: polynomials in *atoms* with numeric coefficients.
+//!
+//! Everything that rigid-body dynamics needs is polynomial in sines and cosines of absolute angles,
+//! rates and accelerations. So the canonical form is the polynomial's own: terms sorted, like terms
+//! collected, constants folded, and `sin²` replaced by `1 − cos²`, so that equal expressions are
+//! equal data. What is not polynomial (a solved system, a reciprocal) enters as a *bound* atom with
+//! a definition.
+
+mod poly;
+mod ring;
+
+pub use poly::{Monomial, Poly, Var};
+pub use ring::{Kind, Ring};

@@ -1,0 +1,358 @@
+//! The ring of expressions of one model: its atoms, what they mean, and calculus on them.
+//!
+//! Atoms are symbols (coordinates, rates, inputs), `sin`/`cos` of an *angle* (a sum of coordinates:
+//! the absolute angles of the mechanism), and *bound* atoms, which stand for a defined value.
+
+use super::poly::{Monomial, Poly, Var, times};
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
+/// What an atom stands for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Kind {
+    /// An input.
+    Symbol(String),
+    /// Cosine of the sum of these coordinates.
+    Cos(Vec<Var>),
+    /// Sine of the sum of these coordinates.
+    Sin(Vec<Var>),
+    /// The value of an expression.
+    Bound(Poly),
+    /// One over the value of an expression.
+    Reciprocal(Poly),
+}
+
+/// The atoms of one model.
+#[derive(Debug, Default)]
+pub struct Ring {
+    plain: Vec<Kind>,
+    angles: Vec<Vec<Var>>,
+    /// Coordinate or rate → its time derivative.
+    rates: BTreeMap<Var, Var>,
+    /// Memo of sums of symbols (rates of angles), so that each is bound once.
+    sums: BTreeMap<Vec<Var>, Var>,
+    derivatives: RefCell<BTreeMap<(Var, Var), Poly>>,
+}
+
+impl Ring {
+    pub fn new() -> Ring {
+        Ring::default()
+    }
+
+    pub fn symbol(&mut self, name: impl Into<String>) -> Var {
+        self.push(Kind::Symbol(name.into()))
+    }
+
+    /// A coordinate with its rate and acceleration: symbols `name`, `name_d`, `name_dd`.
+    pub fn coordinate(&mut self, name: &str) -> [Var; 3] {
+        let q = self.symbol(name);
+        let qd = self.symbol(format!("{name}_d"));
+        let qdd = self.symbol(format!("{name}_dd"));
+        self.rates.insert(q, qd);
+        self.rates.insert(qd, qdd);
+        [q, qd, qdd]
+    }
+
+    fn push(&mut self, kind: Kind) -> Var {
+        self.plain.push(kind);
+        Var::plain(self.plain.len() - 1)
+    }
+
+    /// An atom for the value of `definition` (the atom or constant itself where it already is one).
+    pub fn bind(&mut self, definition: Poly) -> Poly {
+        if definition.len() <= 1 && definition.terms().all(|(m, _)| m.len() <= 1) {
+            return definition;
+        }
+        self.push(Kind::Bound(definition)).into()
+    }
+
+    /// An atom for `1 / definition`.
+    pub fn reciprocal(&mut self, definition: Poly) -> Poly {
+        match definition.as_constant() {
+            Some(c) if c != 0.0 => Poly::constant(1.0 / c),
+            _ => self.push(Kind::Reciprocal(definition)).into(),
+        }
+    }
+
+    /// `(sin, cos)` of the sum of `coordinates`.
+    pub fn sin_cos(&mut self, coordinates: &[Var]) -> (Poly, Poly) {
+        if coordinates.is_empty() {
+            return (Poly::zero(), Poly::constant(1.0));
+        }
+        let angle = self.angle(coordinates);
+        (Var::sin(angle).into(), Var::cos(angle).into())
+    }
+
+    fn angle(&mut self, coordinates: &[Var]) -> usize {
+        let mut sorted = coordinates.to_vec();
+        sorted.sort();
+        self.angles.iter().position(|a| *a == sorted).unwrap_or_else(|| {
+            self.angles.push(sorted);
+            self.angles.len() - 1
+        })
+    }
+
+    /// The sum of `symbols` as one atom (the rate of an angle, say).
+    pub fn sum(&mut self, symbols: &[Var]) -> Poly {
+        match symbols {
+            [] => Poly::zero(),
+            [one] => (*one).into(),
+            _ => {
+                let mut sorted = symbols.to_vec();
+                sorted.sort();
+                if let Some(var) = self.sums.get(&sorted) {
+                    return (*var).into();
+                }
+                let mut definition = Poly::zero();
+                for s in &sorted {
+                    definition += &(*s).into();
+                }
+                let var = self.push(Kind::Bound(definition));
+                self.sums.insert(sorted, var);
+                var.into()
+            }
+        }
+    }
+
+    pub fn kind(&self, var: Var) -> Kind {
+        if var.is_sin() {
+            Kind::Sin(self.angles[var.index()].clone())
+        } else if var.is_cos() {
+            Kind::Cos(self.angles[var.index()].clone())
+        } else {
+            self.plain[var.index()].clone()
+        }
+    }
+
+    /// The time derivative of a coordinate or rate.
+    pub fn rate_of(&self, var: Var) -> Option<Var> {
+        self.rates.get(&var).copied()
+    }
+
+    /// Exact partial derivative with respect to a symbol; bound atoms are differentiated through.
+    pub fn derivative(&self, p: &Poly, by: Var) -> Poly {
+        let mut result = Poly::zero();
+        for (m, c) in p.terms() {
+            for (position, &factor) in m.iter().enumerate() {
+                let inner = self.atom_derivative(factor, by);
+                let mut rest = m.clone();
+                rest.remove(position);
+                for (n, d) in inner.terms() {
+                    result.add_term(times(&rest, n), c * d);
+                }
+            }
+        }
+        result
+    }
+
+    fn atom_derivative(&self, atom: Var, by: Var) -> Poly {
+        if atom == by {
+            return Poly::constant(1.0);
+        }
+        if atom.is_sin() || atom.is_cos() {
+            let turns = self.angles[atom.index()].contains(&by);
+            return match (turns, atom.is_sin()) {
+                (false, _) => Poly::zero(),
+                (true, true) => Var::cos(atom.index()).into(),
+                (true, false) => Poly::from(Var::sin(atom.index())).scaled(-1.0),
+            };
+        }
+        if let Kind::Symbol(_) = self.plain[atom.index()] {
+            return Poly::zero();
+        }
+        if let Some(known) = self.derivatives.borrow().get(&(atom, by)) {
+            return known.clone();
+        }
+        let result = match &self.plain[atom.index()] {
+            Kind::Bound(definition) => self.derivative(definition, by),
+            Kind::Reciprocal(definition) => {
+                let r = Poly::from(atom);
+                &(&r * &r).scaled(-1.0) * &self.derivative(definition, by)
+            }
+            _ => Poly::zero(),
+        };
+        self.derivatives.borrow_mut().insert((atom, by), result.clone());
+        result
+    }
+
+    /// d/dt of an expression in coordinates and rates (each coordinate's rate replaces its derivative).
+    pub fn time_derivative(&mut self, p: &Poly) -> Poly {
+        let mut result = Poly::zero();
+        for (m, c) in p.terms() {
+            for (position, &factor) in m.iter().enumerate() {
+                let inner = self.atom_rate(factor);
+                let mut rest = m.clone();
+                rest.remove(position);
+                for (n, d) in inner.terms() {
+                    result.add_term(times(&rest, n), c * d);
+                }
+            }
+        }
+        result
+    }
+
+    fn atom_rate(&mut self, atom: Var) -> Poly {
+        if atom.is_sin() || atom.is_cos() {
+            let rates: Vec<Var> = self.angles[atom.index()].iter().filter_map(|q| self.rate_of(*q)).collect();
+            let rate = self.sum(&rates);
+            return if atom.is_sin() {
+                &Poly::from(Var::cos(atom.index())) * &rate
+            } else {
+                &Poly::from(Var::sin(atom.index())).scaled(-1.0) * &rate
+            };
+        }
+        if let Some(rate) = self.rate_of(atom) {
+            return rate.into();
+        }
+        match self.plain[atom.index()].clone() {
+            // Sums of coordinates or rates stay sums: α̇ = Σ q̇ becomes the atom α̈ = Σ q̈.
+            Kind::Bound(definition) if definition.terms().all(|(m, c)| m.len() == 1 && c == 1.0) => {
+                let rates: Vec<Var> = definition.terms().filter_map(|(m, _)| self.rate_of(m[0])).collect();
+                self.sum(&rates)
+            }
+            Kind::Bound(definition) => self.time_derivative(&definition),
+            _ => Poly::zero(),
+        }
+    }
+
+    /// Replaces atoms by expressions. Sums of symbols (rates) are rebuilt from their replaced parts.
+    pub fn substitute(&mut self, p: &Poly, map: &BTreeMap<Var, Poly>) -> Poly {
+        let mut result = Poly::zero();
+        for (m, c) in p.terms() {
+            let mut product = Poly::constant(c);
+            for &factor in m {
+                let replacement = self.substitute_atom(factor, map);
+                product = &product * &replacement;
+            }
+            result += &product;
+        }
+        result
+    }
+
+    fn substitute_atom(&mut self, atom: Var, map: &BTreeMap<Var, Poly>) -> Poly {
+        if let Some(replacement) = map.get(&atom) {
+            return replacement.clone();
+        }
+        if atom.is_sin() || atom.is_cos() {
+            return atom.into();
+        }
+        match self.plain[atom.index()].clone() {
+            Kind::Bound(definition) => {
+                let touched = definition.terms().any(|(m, _)| m.iter().any(|v| map.contains_key(v)));
+                if !touched {
+                    return atom.into();
+                }
+                let replaced = self.substitute(&definition, map);
+                // A sum of symbols with some of them dropped is again a sum of symbols.
+                if replaced.terms().all(|(m, c)| m.len() == 1 && c == 1.0) {
+                    let symbols: Vec<Var> = replaced.terms().map(|(m, _)| m[0]).collect();
+                    return self.sum(&symbols);
+                }
+                self.bind(replaced)
+            }
+            _ => atom.into(),
+        }
+    }
+
+    /// Splits every angle that contains `late`: `sin(late + rest)` becomes a sum of products.
+    ///
+    /// After it, expressions that do not depend on `late` no longer contain it: the ring's law
+    /// `sin² + cos² = 1` cancels it.
+    pub fn split_angles(&mut self, p: &Poly, late: Var) -> Poly {
+        let mut map = BTreeMap::new();
+        for angle in 0..self.angles.len() {
+            if !self.angles[angle].contains(&late) || self.angles[angle].len() == 1 {
+                continue;
+            }
+            let rest: Vec<Var> = self.angles[angle].iter().copied().filter(|v| *v != late).collect();
+            let (sr, cr) = self.sin_cos(&rest);
+            let (sl, cl) = self.sin_cos(&[late]);
+            map.insert(Var::sin(angle), &(&sl * &cr) + &(&cl * &sr));
+            map.insert(Var::cos(angle), &(&cl * &cr) - &(&sl * &sr));
+        }
+        self.substitute(p, &map)
+    }
+
+    /// Groups an expression by its factors among the atoms for which `late` holds: `Σ late · early`.
+    pub fn staged(&self, p: &Poly, late: impl Fn(Var) -> bool) -> BTreeMap<Monomial, Poly> {
+        let mut groups: BTreeMap<Monomial, Poly> = BTreeMap::new();
+        for (m, c) in p.terms() {
+            let (l, e): (Monomial, Monomial) = m.iter().copied().partition(|v| late(*v));
+            groups.entry(l).or_default().add_term(e, c);
+        }
+        groups
+    }
+
+    /// Numeric value, for tests: `values` gives the symbols.
+    pub fn evaluate(&self, p: &Poly, values: &BTreeMap<Var, f64>) -> f64 {
+        p.terms().map(|(m, c)| m.iter().fold(c, |product, v| product * self.atom_value(*v, values))).sum()
+    }
+
+    fn atom_value(&self, atom: Var, values: &BTreeMap<Var, f64>) -> f64 {
+        let angle = |a: usize| -> f64 { self.angles[a].iter().map(|v| self.atom_value(*v, values)).sum() };
+        if atom.is_sin() {
+            angle(atom.index()).sin()
+        } else if atom.is_cos() {
+            angle(atom.index()).cos()
+        } else {
+            match &self.plain[atom.index()] {
+                Kind::Bound(definition) => self.evaluate(definition, values),
+                Kind::Reciprocal(definition) => 1.0 / self.evaluate(definition, values),
+                _ => values.get(&atom).copied().unwrap_or(f64::NAN),
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn derivative_passes_through_angles_sums_and_reciprocals() {
+        let mut ring = Ring::new();
+        let [a, ad, _] = ring.coordinate("a");
+        let [b, bd, _] = ring.coordinate("b");
+        let (s, c) = ring.sin_cos(&[a, b]);
+        let rate = ring.sum(&[ad, bd]);
+        let r = ring.reciprocal(&Poly::constant(2.0) + &c);
+        let p = &(&s * &(&rate * &rate)) * &r;
+        let at = |x: f64, v: f64| {
+            let values = BTreeMap::from([(a, x), (b, 0.3), (ad, v), (bd, 0.7)]);
+            (ring.evaluate(&p, &values), ring.evaluate(&ring.derivative(&p, a), &values), ring.evaluate(&ring.derivative(&p, ad), &values))
+        };
+        let h = 1e-6;
+        let (_, by_angle, by_rate) = at(0.4, 1.1);
+        assert!(((at(0.4 + h, 1.1).0 - at(0.4 - h, 1.1).0) / (2.0 * h) - by_angle).abs() < 1e-8);
+        assert!(((at(0.4, 1.1 + h).0 - at(0.4, 1.1 - h).0) / (2.0 * h) - by_rate).abs() < 1e-8);
+    }
+
+    #[test]
+    fn a_common_rotation_cancels_when_angles_are_split() {
+        let mut ring = Ring::new();
+        let [t, ..] = ring.coordinate("t");
+        let [a, ..] = ring.coordinate("a");
+        let [b, ..] = ring.coordinate("b");
+        let (s1, c1) = ring.sin_cos(&[t, a]);
+        let (s2, c2) = ring.sin_cos(&[t, a, b]);
+        let cosine_of_difference = &(&c1 * &c2) + &(&s1 * &s2);
+        let split = ring.split_angles(&cosine_of_difference, t);
+        let (st, ct) = ring.sin_cos(&[t]);
+        let (st, ct) = (st.terms().next().unwrap().0[0], ct.terms().next().unwrap().0[0]);
+        assert!(!split.contains(st) && !split.contains(ct));
+    }
+
+    #[test]
+    fn time_derivative_is_the_chain_rule() {
+        let mut ring = Ring::new();
+        let [a, ad, add] = ring.coordinate("a");
+        let [b, bd, bdd] = ring.coordinate("b");
+        let (s, _) = ring.sin_cos(&[a, b]);
+        let v = ring.time_derivative(&s);
+        let acc = ring.time_derivative(&v);
+        let values = BTreeMap::from([(a, 0.2), (b, 0.5), (ad, 1.5), (bd, -0.4), (add, 2.0), (bdd, 3.0)]);
+        let (angle, rate, acceleration) = (0.7f64, 1.1, 5.0);
+        assert!((ring.evaluate(&v, &values) - angle.cos() * rate).abs() < 1e-14);
+        assert!((ring.evaluate(&acc, &values) - (angle.cos() * acceleration - angle.sin() * rate * rate)).abs() < 1e-14);
+    }
+}

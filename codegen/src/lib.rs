@@ -1,0 +1,19 @@
+//! From a declarative description of a legged robot to closed-form, allocation-free Rust.
+//!
+//! The passes, in the order in which data flows: [`spec`] (TOML, validated, with diagnostics) →
+//! [`mechanism`] (virtual legs: one tree of bodies per gait) → [`expr`] (canonical polynomials) →
+//! [`dynamics`] (kernels: the equations of motion) → [`program`] (factored, scheduled) → [`emit`]
+//! (Rust source). Each pass is a pure function: same spec, same bytes. Only [`Config`] reads the
+//! environment and prints.
+
+#![forbid(unsafe_code)]
+
+pub mod dynamics;
+pub mod expr;
+pub mod mechanism;
+pub mod program;
+pub mod spec;
+mod config;
+pub mod emit;
+
+pub use config::{Config, Generated, SpecFile, generate};

@@ -1,0 +1,219 @@
+//! From the specification to a mechanism: one tree of rigid bodies per gait, with numbers.
+//!
+//! This is where virtual legs come from (§2.1): the real legs that move together become one leg
+//! whose hip is the mean of their mounts and whose masses and inertias are their sums.
+
+use crate::spec::{Axis, Gait, HalfSteps, Joint, Limits, Robot, Rotation, Unactuated};
+
+/// The tree of rigid bodies of one gait's model; SI units, body axes x forward, y up, z right.
+#[derive(Clone, Debug)]
+pub struct Mechanism {
+    pub gait: String,
+    pub robot: String,
+    /// m/s², along −y.
+    pub gravity: f64,
+    /// Whether the platform moves along z as well as x and y.
+    pub lateral: bool,
+    pub rotation: Rotation,
+    /// Parents precede children; body 0 is the platform.
+    pub bodies: Vec<Body>,
+    /// Joint coordinates q1, q2, … of virtual leg 1, then of virtual leg 2.
+    pub joints: Vec<Actuated>,
+    pub legs: [VirtualLeg; 2],
+    /// Index of β in q = [joints, θ].
+    pub unactuated: usize,
+    pub half_steps: HalfSteps,
+    pub polynomial_order: usize,
+    pub limits: Limits,
+}
+
+/// A rigid body and the joint that carries it.
+#[derive(Clone, Debug)]
+pub struct Body {
+    pub name: String,
+    pub parent: Option<usize>,
+    /// Index of its joint's coordinate in q; `None` for the platform.
+    pub coordinate: Option<usize>,
+    pub axis: Axis,
+    /// Its joint in the parent's axes, from the parent's joint (from the mass centre for the platform), m.
+    pub offset: [f64; 3],
+    pub mass: f64,
+    /// Mass centre from its own joint, in its own axes, m.
+    pub com: [f64; 3],
+    /// Moments about the mass centre in its own axes, kg·m².
+    pub inertia: [f64; 3],
+}
+
+/// An actuated joint, seen at the joint: N·m, rad/s.
+#[derive(Clone, Debug)]
+pub struct Actuated {
+    pub name: String,
+    pub range: [f64; 2],
+    pub gear: f64,
+    pub max_torque: f64,
+    pub unloaded_speed: f64,
+    pub loaded_speed: f64,
+    /// Rotor inertia times gear², kg·m².
+    pub rotor_inertia: f64,
+}
+
+/// A virtual leg: which joints it has and where its foot is.
+#[derive(Clone, Debug)]
+pub struct VirtualLeg {
+    pub joints: std::ops::Range<usize>,
+    pub foot_body: usize,
+    /// Foot from the joint of `foot_body`, in its axes, m.
+    pub foot: [f64; 3],
+}
+
+impl Mechanism {
+    /// Builds the virtual-leg model of `gait`. Both must have passed validation.
+    pub fn new(robot: &Robot, gait: &Gait) -> Mechanism {
+        let mut bodies = vec![Body {
+            name: robot.platform.name.clone(),
+            parent: None,
+            coordinate: None,
+            axis: Axis::Pitch,
+            offset: [0.0; 3],
+            mass: robot.platform.mass,
+            com: [0.0; 3],
+            inertia: robot.platform.inertia,
+        }];
+        let mut joints = Vec::new();
+        let legs = [0, 1].map(|k| {
+            let members: Vec<_> = gait.virtual_legs[k].iter().map(|i| &robot.legs[*i]).collect();
+            let share = 1.0 / members.len() as f64;
+            let first = joints.len();
+            let mut hip = [0.0; 3];
+            for (axis, h) in hip.iter_mut().enumerate() {
+                let mean: f64 = members.iter().map(|leg| leg.mount[axis]).sum::<f64>() * share;
+                *h = mean - robot.platform.com[axis];
+            }
+            let mut parent = 0;
+            let mut offset = hip;
+            for (depth, segment) in members[0].chain.iter().enumerate() {
+                let links: Vec<_> = members.iter().map(|leg| &leg.chain[depth].link).collect();
+                let mass = links.iter().map(|l| l.mass).sum();
+                let inertia = [0, 1, 2].map(|a| links.iter().map(|l| l.inertia[a]).sum());
+                bodies.push(Body {
+                    name: format!("{}{}", segment.link.name, k + 1),
+                    parent: Some(parent),
+                    coordinate: Some(joints.len()),
+                    axis: segment.joint.axis,
+                    offset,
+                    mass,
+                    com: segment.link.com,
+                    inertia,
+                });
+                joints.push(Actuated::new(&segment.joint, k + 1));
+                parent = bodies.len() - 1;
+                offset = [0.0, -segment.link.length, 0.0];
+            }
+            VirtualLeg { joints: first..joints.len(), foot_body: parent, foot: offset }
+        });
+        let unactuated = match gait.unactuated {
+            Unactuated::Platform => joints.len(),
+            Unactuated::Joint { leg, joint } => legs[leg].joints.start + joint,
+        };
+        Mechanism {
+            gait: gait.name.clone(),
+            robot: robot.name.clone(),
+            gravity: robot.gravity,
+            lateral: gait.lateral,
+            rotation: gait.rotation,
+            bodies,
+            joints,
+            legs,
+            unactuated,
+            half_steps: gait.half_steps,
+            polynomial_order: gait.polynomial_order,
+            limits: gait.limits.clone(),
+        }
+    }
+
+    pub fn total_mass(&self) -> f64 {
+        self.bodies.iter().map(|b| b.mass).sum()
+    }
+
+    /// Number of position coordinates p (and of reaction components).
+    pub fn positions(&self) -> usize {
+        if self.lateral { 3 } else { 2 }
+    }
+
+    /// Number of joint and orientation coordinates q.
+    pub fn orientations(&self) -> usize {
+        self.joints.len() + usize::from(self.rotation != Rotation::None)
+    }
+
+    /// Names of X = [p, q].
+    pub fn coordinate_names(&self) -> Vec<String> {
+        let mut names: Vec<String> = ["x", "y", "z"][..self.positions()].iter().map(|s| s.to_string()).collect();
+        names.extend((1..=self.joints.len()).map(|j| format!("q{j}")));
+        if self.rotation != Rotation::None {
+            names.push("theta".into());
+        }
+        names
+    }
+
+    /// Joints that hang on the platform, one per leg.
+    pub fn root_joints(&self) -> impl Iterator<Item = usize> + '_ {
+        self.bodies.iter().filter(|b| b.parent == Some(0)).filter_map(|b| b.coordinate)
+    }
+
+    /// The direction in q along which no torque does work: the whole robot turning about the
+    /// stance foot. Its balance is the angular momentum theorem (eq. 8, 9).
+    pub fn free_direction(&self) -> Vec<usize> {
+        if self.rotation == Rotation::None { self.root_joints().collect() } else { vec![self.joints.len()] }
+    }
+
+    /// Indices in q of the prescribed coordinates Q: all but β.
+    pub fn prescribed(&self) -> Vec<usize> {
+        (0..self.orientations()).filter(|i| *i != self.unactuated).collect()
+    }
+
+    /// `D_G` (eq. 5) restricted to q: how the independent torques act; shape orientations × prescribed.
+    ///
+    /// Where the platform does not rotate, the torques on it must balance (eq. 1): the torque of
+    /// the unactuated joint is minus the sum of the other torques on the platform.
+    pub fn torque_map(&self) -> Vec<Vec<f64>> {
+        let independent: Vec<usize> = self.independent_torques();
+        let roots: Vec<usize> = self.root_joints().collect();
+        (0..self.orientations())
+            .map(|row| {
+                independent
+                    .iter()
+                    .map(|&torque| {
+                        if row == torque {
+                            1.0
+                        } else if self.rotation == Rotation::None && row == self.unactuated && roots.contains(&torque) {
+                            -1.0
+                        } else {
+                            0.0
+                        }
+                    })
+                    .collect()
+            })
+            .collect()
+    }
+
+    /// The joints whose torques are independent: as many as there are prescribed coordinates.
+    pub fn independent_torques(&self) -> Vec<usize> {
+        (0..self.joints.len()).filter(|j| *j != self.unactuated).collect()
+    }
+}
+
+impl Actuated {
+    fn new(joint: &Joint, leg: usize) -> Actuated {
+        let a = &joint.actuator;
+        let joint_speed = |rev_per_min: f64| rev_per_min * std::f64::consts::TAU / 60.0 / a.gear;
+        Actuated {
+            name: format!("{}{leg}", joint.name),
+            range: joint.range,
+            gear: a.gear,
+            max_torque: a.max_torque * a.gear,
+            unloaded_speed: joint_speed(a.unloaded_speed),
+            loaded_speed: joint_speed(a.loaded_speed),
+            rotor_inertia: a.rotor_inertia * a.gear * a.gear,
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! From expressions to straight-line programs: factoring, common subexpressions, scheduling, counts.
+
+mod factor;
+mod lower;
+
+pub use factor::factor;
+
+use smallvec::SmallVec;
+use std::collections::BTreeMap;
+
+/// Index of a node.
+pub type Id = u32;
+
+/// `coefficient · product of nodes`, nodes sorted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Term {
+    pub coefficient: f64,
+    pub factors: SmallVec<[Id; 6]>,
+}
+
+/// A sum of terms.
+pub type Sum = Vec<Term>;
+
+/// How a node gets its value. Sums are referred to by index into `Program::sums`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Node {
+    /// Element of an input: (input, element).
+    Input(usize, usize),
+    Sin(usize),
+    Cos(usize),
+    Value(usize),
+    Reciprocal(usize),
+}
+
+/// A kernel as sums over nodes.
+#[derive(Clone, Debug)]
+pub struct Program {
+    pub nodes: Vec<Node>,
+    pub sums: Vec<Sum>,
+    /// Index into `sums` of each output value, output by output.
+    pub outputs: Vec<Vec<usize>>,
+}
+
+/// Floating-point operations of a program.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Operations {
+    /// Additions, subtractions and multiplications.
+    pub flops: usize,
+    pub divisions: usize,
+    /// Pairs of sine and cosine.
+    pub sincos: usize,
+}
+
+impl Term {
+    /// Multiplications to evaluate it.
+    pub fn cost(&self) -> usize {
+        match self.factors.len() {
+            0 => 0,
+            n => n - 1 + usize::from(self.coefficient.abs() != 1.0),
+        }
+    }
+}
+
+impl Program {
+    /// Lowers a kernel and factors it.
+    pub fn new(ring: &crate::expr::Ring, kernel: &crate::dynamics::Kernel) -> Program {
+        let mut program = lower::lower(ring, kernel);
+        factor(&mut program);
+        program
+    }
+
+    /// Nodes in an order in which each comes after all that it needs; unused ones are left out.
+    pub fn schedule(&self) -> Vec<Id> {
+        let mut order = Vec::new();
+        let mut state = vec![false; self.nodes.len()];
+        for sum in self.outputs.iter().flatten() {
+            self.visit_sum(*sum, &mut state, &mut order);
+        }
+        order
+    }
+
+    fn visit_sum(&self, sum: usize, seen: &mut [bool], order: &mut Vec<Id>) {
+        for id in self.sums[sum].iter().flat_map(|t| &t.factors) {
+            if seen[*id as usize] {
+                continue;
+            }
+            seen[*id as usize] = true;
+            match self.nodes[*id as usize] {
+                Node::Input(..) => {}
+                Node::Sin(s) | Node::Cos(s) | Node::Value(s) | Node::Reciprocal(s) => self.visit_sum(s, seen, order),
+            }
+            order.push(*id);
+        }
+    }
+
+    /// Operation counts of the program as it is emitted.
+    pub fn operations(&self) -> Operations {
+        let mut count = Operations::default();
+        let mut arguments = std::collections::BTreeSet::new();
+        let sum_cost = |s: usize| -> usize {
+            let sum = &self.sums[s];
+            sum.iter().map(Term::cost).sum::<usize>() + sum.len().saturating_sub(1)
+        };
+        for id in self.schedule() {
+            match self.nodes[id as usize] {
+                Node::Input(..) => {}
+                Node::Value(s) => count.flops += sum_cost(s),
+                Node::Reciprocal(s) => {
+                    count.flops += sum_cost(s);
+                    count.divisions += 1;
+                }
+                Node::Sin(s) | Node::Cos(s) => {
+                    if arguments.insert(s) {
+                        count.flops += sum_cost(s);
+                        count.sincos += 1;
+                    }
+                }
+            }
+        }
+        let unique: std::collections::BTreeSet<usize> = self.outputs.iter().flatten().copied().collect();
+        count.flops += unique.iter().map(|s| sum_cost(*s)).sum::<usize>();
+        count
+    }
+
+    /// Interprets the program: for tests. `inputs[i][k]` is element k of input i.
+    pub fn evaluate(&self, inputs: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let mut values: BTreeMap<Id, f64> = BTreeMap::new();
+        let sum = |values: &BTreeMap<Id, f64>, s: usize| -> f64 {
+            self.sums[s].iter().map(|t| t.factors.iter().fold(t.coefficient, |p, id| p * values[id])).sum()
+        };
+        for id in self.schedule() {
+            let value = match self.nodes[id as usize] {
+                Node::Input(i, k) => inputs[i][k],
+                Node::Sin(s) => sum(&values, s).sin(),
+                Node::Cos(s) => sum(&values, s).cos(),
+                Node::Value(s) => sum(&values, s),
+                Node::Reciprocal(s) => 1.0 / sum(&values, s),
+            };
+            values.insert(id, value);
+        }
+        self.outputs.iter().map(|list| list.iter().map(|s| sum(&values, *s)).collect()).collect()
+    }
+}

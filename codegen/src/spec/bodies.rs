@@ -1,0 +1,109 @@
+//! Single tables of `robot.toml` → plain values: the platform, links, inertias, actuators.
+
+use super::Code;
+use super::diagnostic::Sink;
+use super::types::{Actuator, Link, Platform};
+use super::view::View;
+
+pub(super) fn platform(name: &str, view: &View<'_>, sink: &mut Sink) -> Option<Platform> {
+    let mass = view.number("mass", sink);
+    let com = if view.has("com") {
+        view.vector("com", sink).map(|at| at.value)
+    } else {
+        Some([0.0; 3])
+    };
+    let inertia = inertia(view, ["roll", "yaw", "pitch"], sink);
+    Some(Platform {
+        name: name.to_string(),
+        mass: mass?.value,
+        com: com?,
+        inertia: inertia?,
+    })
+}
+
+pub(super) fn link(name: &str, view: &View<'_>, sink: &mut Sink) -> Option<Link> {
+    let mass = view.number("mass", sink);
+    let length = view.number("length", sink);
+    let com = view.com("com", sink);
+    let inertia = inertia(view, ["lateral", "axial", "swing"], sink);
+    Some(Link {
+        name: name.to_string(),
+        mass: mass?.value,
+        length: length?.value,
+        com: com?,
+        inertia: inertia?,
+    })
+}
+
+/// Moments about x, y, z under their names in this table. No moment of a rigid body exceeds the sum of the
+/// other two: Ix + Iy - Iz = 2 ∫ z² dm ≥ 0.
+fn inertia(view: &View<'_>, keys: [&str; 3], sink: &mut Sink) -> Option<[f64; 3]> {
+    let moments = view.table("inertia", sink)?;
+    let read = keys.map(|key| moments.number(key, sink));
+    let [Some(x), Some(y), Some(z)] = read else {
+        return None;
+    };
+    let values = [x.value, y.value, z.value];
+    for (i, at) in [x, y, z].iter().enumerate() {
+        let others = values[(i + 1) % 3] + values[(i + 2) % 3];
+        // Some slack for data in decimal digits: a flat plate has exactly the sum.
+        if at.value > others * (1.0 + 1e-9) {
+            let [a, b] = [keys[(i + 1) % 3], keys[(i + 2) % 3]];
+            let title = format!(
+                "`{}`: an inertia that no rigid body can have",
+                view.join("inertia")
+            );
+            let label = format!("more than {a} + {b} = {}", short(others));
+            let help = format!(
+                "no moment exceeds the sum of the other two: write {} = {} or less, or raise the others",
+                keys[i],
+                short(others)
+            );
+            sink.report(Code::ImpossibleInertia, title, &at.span, label, help);
+            return None;
+        }
+    }
+    Some(values)
+}
+
+/// A sum of decimal numbers without the noise of its last digits.
+fn short(x: f64) -> f64 {
+    format!("{x:.9e}").parse().unwrap_or(x)
+}
+
+pub(super) fn actuator(name: &str, view: &View<'_>, sink: &mut Sink) -> Option<Actuator> {
+    let gear = view.number("gear", sink);
+    let max_torque = view.number("max_torque", sink);
+    let speeds = view.table("max_speed", sink).and_then(|speeds| {
+        let unloaded = speeds.number("unloaded", sink);
+        let loaded = speeds.number("at_max_torque", sink);
+        let (unloaded, loaded) = (unloaded?, loaded?);
+        if loaded.value <= unloaded.value {
+            return Some((unloaded.value, loaded.value));
+        }
+        let title = format!("`{}` rises with the torque", view.join("max_speed"));
+        let help = format!(
+            "a loaded motor turns slower: write unloaded = {}, at_max_torque = {}",
+            loaded.value, unloaded.value
+        );
+        sink.report(
+            Code::SpeedRisesWithTorque,
+            title,
+            &loaded.span,
+            "faster than unloaded",
+            help,
+        );
+        sink.beside(sink.label(&unloaded.span, "unloaded"));
+        None
+    });
+    let rotor_inertia = view.number("rotor_inertia", sink);
+    let (unloaded_speed, loaded_speed) = speeds?;
+    Some(Actuator {
+        name: name.to_string(),
+        gear: gear?.value,
+        max_torque: max_torque?.value,
+        unloaded_speed,
+        loaded_speed,
+        rotor_inertia: rotor_inertia?.value,
+    })
+}

@@ -1,0 +1,179 @@
+//! Reads the values of a table, each as its key's kind says, and reports what does not fit.
+//!
+//! Every getter returns `None` for an absent key, and for a bad value after it has said why; callers read all
+//! keys of a table before they give up on it, so that one run finds as many mistakes as it can.
+
+use toml::de::DeValue;
+
+use super::Code;
+use super::diagnostic::{At, Sink};
+use super::keys::{Bound, Kind};
+use super::view::View;
+
+/// A list of names, and a list of such lists, each with its place.
+pub(super) type Names = At<Vec<At<String>>>;
+pub(super) type NameLists = At<Vec<Names>>;
+
+impl View<'_> {
+    pub fn text(&self, name: &str, sink: &mut Sink) -> Option<At<String>> {
+        let field = self.field(name)?;
+        match field.value {
+            DeValue::String(text) => Some(At {
+                value: text.to_string(),
+                span: field.span,
+            }),
+            _ => field.wrong_type(sink),
+        }
+    }
+
+    /// One of the key's words, as its index among them.
+    pub fn choice(&self, name: &str, sink: &mut Sink) -> Option<At<usize>> {
+        let field = self.field(name)?;
+        let (Kind::Choice(words), DeValue::String(text)) = (&field.key.kind, field.value) else {
+            return field.wrong_type(sink);
+        };
+        field.word(text, words, &field.span, sink)
+    }
+
+    /// A list of the key's words, each as its index among them.
+    pub fn choices(&self, name: &str, sink: &mut Sink) -> Option<At<Vec<usize>>> {
+        let field = self.field(name)?;
+        let (Kind::Choices(words), DeValue::Array(items)) = (&field.key.kind, field.value) else {
+            return field.wrong_type(sink);
+        };
+        let chosen: Vec<_> = items
+            .iter()
+            .map(|item| match item.get_ref() {
+                DeValue::String(text) => field.word(text, words, &item.span(), sink),
+                _ => field.wrong_type_at(item.get_ref(), &item.span(), "a text in quotes", sink),
+            })
+            .collect();
+        let chosen: Option<Vec<At<usize>>> = chosen.into_iter().collect();
+        let chosen = chosen?;
+        for (i, word) in chosen.iter().enumerate() {
+            if chosen[..i].iter().any(|w| w.value == word.value) {
+                let title = format!("`{}` names \"{}\" twice", field.path, words[word.value]);
+                sink.report(
+                    Code::WrongCount,
+                    title,
+                    &word.span,
+                    "named before",
+                    "remove one of them",
+                );
+                return None;
+            }
+        }
+        Some(At {
+            value: chosen.into_iter().map(|w| w.value).collect(),
+            span: field.span,
+        })
+    }
+
+    pub fn order(&self, name: &str, sink: &mut Sink) -> Option<At<i64>> {
+        let field = self.field(name)?;
+        let (Kind::Order(orders), DeValue::Integer(digits)) = (&field.key.kind, field.value) else {
+            return field.wrong_type(sink);
+        };
+        let value = i64::from_str_radix(digits.as_str(), digits.radix()).ok();
+        match value.filter(|v| orders.contains(v)) {
+            Some(value) => Some(At {
+                value,
+                span: field.span,
+            }),
+            None => {
+                let title = format!("`{}` cannot be {digits}", field.path);
+                let label = format!("must be {}", field.key.kind.shape());
+                sink.report(
+                    Code::UnknownChoice,
+                    title,
+                    &field.span,
+                    label,
+                    field.advice(),
+                );
+                None
+            }
+        }
+    }
+
+    pub fn number(&self, name: &str, sink: &mut Sink) -> Option<At<f64>> {
+        let field = self.field(name)?;
+        let Kind::Number(bound) = field.key.kind else {
+            return None;
+        };
+        let value = field.number(field.value, &field.span, bound, sink)?;
+        Some(At {
+            value,
+            span: field.span,
+        })
+    }
+
+    pub fn vector(&self, name: &str, sink: &mut Sink) -> Option<At<[f64; 3]>> {
+        let field = self.field(name)?;
+        field.numbers(Bound::Any, sink)
+    }
+
+    pub fn pair(&self, name: &str, sink: &mut Sink) -> Option<At<[f64; 2]>> {
+        let field = self.field(name)?;
+        let Kind::Pair(bound) = field.key.kind else {
+            return None;
+        };
+        let pair: At<[f64; 2]> = field.numbers(bound, sink)?;
+        let [low, high] = pair.value;
+        if low < high {
+            return Some(pair);
+        }
+        let title = format!("`{}` does not rise", field.path);
+        let help = match low == high {
+            true => format!("write a lower and a higher value: {}", field.key.template()),
+            false => format!(
+                "write the lower value first: {} = [{high:?}, {low:?}]",
+                field.key.name
+            ),
+        };
+        sink.report(
+            Code::ReversedRange,
+            title,
+            &pair.span,
+            "lowest first, highest second",
+            help,
+        );
+        None
+    }
+
+    /// A mass centre: a distance along the link (which points along -y), or a vector.
+    pub fn com(&self, name: &str, sink: &mut Sink) -> Option<[f64; 3]> {
+        let field = self.field(name)?;
+        match field.value {
+            DeValue::Array(_) => field.numbers(Bound::Any, sink).map(|at| at.value),
+            DeValue::Float(_) | DeValue::Integer(_) => {
+                let along = field.number(field.value, &field.span, Bound::Any, sink)?;
+                // 0 - along, not -along: a mass centre in the joint is at 0, not at -0.
+                Some([0.0, 0.0 - along, 0.0])
+            }
+            _ => field.wrong_type(sink),
+        }
+    }
+
+    /// Lists of names.
+    pub fn name_lists(&self, name: &str, sink: &mut Sink) -> Option<NameLists> {
+        let field = self.field(name)?;
+        let DeValue::Array(lists) = field.value else {
+            return field.wrong_type(sink);
+        };
+        let mut all = Some(Vec::new());
+        for list in lists.iter() {
+            let read = match list.get_ref() {
+                DeValue::Array(items) => field.name_list(items, &list.span(), sink),
+                other => field.wrong_type_at(other, &list.span(), "a list of names", sink),
+            };
+            all = all.zip(read).map(|(mut all, read)| {
+                all.push(read);
+                all
+            });
+        }
+        Some(At {
+            value: all?,
+            span: field.span,
+        })
+    }
+}

@@ -1,0 +1,103 @@
+//! A gait file → [`Gait`]: the values of its tables. How they fit the robot is checked in `pairing.rs`, how
+//! they fit each other in `coordinates.rs`.
+
+use super::coordinates;
+use super::decode::NameLists;
+use super::diagnostic::{At, Diagnostic, Sink, Source};
+use super::format;
+use super::mirror;
+use super::name;
+use super::pairing;
+use super::robot::RobotFile;
+use super::syntax;
+use super::types::{Gait, HalfSteps, Limits, Rotation};
+use super::view::View;
+
+/// Reads a gait and checks it against its robot.
+///
+/// `path` is what messages shall call the file, `text` its contents. Where the file gives no `name`, the
+/// gait is called like the file: `trot.toml` is the trot.
+///
+/// # Errors
+/// All mistakes that were found, at least one, in the order of the file. Their second labels may point into
+/// the robot's file.
+pub fn parse_gait(path: &str, text: &str, robot: &RobotFile) -> Result<Gait, Vec<Diagnostic>> {
+    let mut sink = Sink::new(Source::new(path, text));
+    let gait = read(path, text, robot, &mut sink);
+    match gait {
+        Some(gait) if sink.is_empty() => Ok(gait),
+        _ => Err(sink.into_sorted()),
+    }
+}
+
+/// A gait as written, each part with its place.
+pub(super) struct RawGait {
+    pub virtual_legs: Option<NameLists>,
+    pub moves: Option<At<Vec<usize>>>,
+    pub rotation: Option<At<Rotation>>,
+    pub unactuated: Option<At<String>>,
+    pub half_steps: Option<At<HalfSteps>>,
+}
+
+fn read(path: &str, text: &str, robot: &RobotFile, sink: &mut Sink) -> Option<Gait> {
+    let root = syntax::document(text, sink)?;
+    let root = View::open(&root, &format::GAIT, String::new(), 0..0, sink);
+    let name = name::of_gait(path, &root, sink);
+    let platform = root.table("platform", sink);
+    let raw = RawGait {
+        virtual_legs: root.name_lists("virtual_legs", sink),
+        moves: platform.as_ref().and_then(|p| p.choices("moves", sink)),
+        rotation: platform
+            .as_ref()
+            .and_then(|p| p.choice("rotates", sink))
+            .map(|word| At {
+                value: [Rotation::None, Rotation::Pitch, Rotation::Roll][word.value.min(2)],
+                span: word.span,
+            }),
+        unactuated: coordinates::single(&root, sink),
+        half_steps: root.choice("half_steps", sink).map(|word| At {
+            value: [HalfSteps::Mirrored, HalfSteps::Distinct][word.value.min(1)],
+            span: word.span,
+        }),
+    };
+    let polynomial_order = match root.has("polynomial_order") {
+        true => root
+            .order("polynomial_order", sink)
+            .and_then(|order| usize::try_from(order.value).ok()),
+        false => Some(4),
+    };
+    let limits = root
+        .table("limits", sink)
+        .and_then(|view| limits(&view, sink));
+
+    let lateral = coordinates::lateral(&raw, sink);
+    let virtual_legs = pairing::virtual_legs(&raw, &root.key_span("virtual_legs"), robot, sink);
+    let unactuated = coordinates::unactuated(&raw, virtual_legs.as_ref(), robot, sink);
+    if let Some(legs) = &virtual_legs {
+        coordinates::check_plane(&raw, robot, sink);
+        mirror::check(&raw, legs, robot, sink);
+    }
+    Some(Gait {
+        name: name?,
+        virtual_legs: virtual_legs?,
+        lateral: lateral?,
+        rotation: raw.rotation?.value,
+        unactuated: unactuated?,
+        half_steps: raw.half_steps?.value,
+        polynomial_order: polynomial_order?,
+        limits: limits?,
+    })
+}
+
+fn limits(view: &View<'_>, sink: &mut Sink) -> Option<Limits> {
+    let friction = view.number("friction", sink);
+    let min_vertical_force = view.number("min_vertical_force", sink);
+    let swing_clearance = view.number("swing_clearance", sink);
+    let half_step_duration = view.pair("half_step_duration", sink);
+    Some(Limits {
+        friction: friction?.value,
+        min_vertical_force: min_vertical_force?.value,
+        swing_clearance: swing_clearance?.value,
+        half_step_duration: half_step_duration?.value,
+    })
+}

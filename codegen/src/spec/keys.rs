@@ -1,0 +1,171 @@
+//! What can be said about the format: tables, their keys, what a key holds, in which bounds and unit.
+//!
+//! The format itself is in `format.rs`. One definition serves the decoder, the help lines of messages and
+//! the JSON schemas (`schema.rs`), so that they cannot drift apart.
+
+/// A table of the format.
+#[derive(Debug)]
+pub(super) struct Table {
+    /// What messages call it, with its article.
+    pub noun: &'static str,
+    pub doc: &'static str,
+    pub keys: &'static [Key],
+}
+
+/// One key of a table.
+#[derive(Debug)]
+pub(super) struct Key {
+    pub name: &'static str,
+    pub kind: Kind,
+    /// Unit of its numbers, empty where there is none.
+    pub unit: &'static str,
+    /// What is used where the key is absent; `None`: it must be given.
+    pub default: Option<&'static str>,
+    pub doc: &'static str,
+}
+
+/// What a key holds.
+#[derive(Debug)]
+pub(super) enum Kind {
+    /// Free text.
+    Text,
+    /// A name given elsewhere in the specification.
+    Name,
+    /// One of a few words.
+    Choice(&'static [&'static str]),
+    /// One of a few whole numbers.
+    Order(&'static [i64]),
+    Number(Bound),
+    /// `[x, y, z]`.
+    Vector,
+    /// `[lowest, highest]`.
+    Pair(Bound),
+    /// A distance along the link, or `[x, y, z]`.
+    Com,
+    /// A list of some of a few words.
+    Choices(&'static [&'static str]),
+    /// Two lists of names.
+    NameLists,
+    /// `"platform"` or `"leg1.<joint>"`.
+    Coordinate,
+    Table(&'static Table),
+    /// Tables under names of the user's choice, each of one of these forms.
+    Map(&'static [&'static Table]),
+}
+
+/// Bounds of a number. Every number is finite besides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Bound {
+    Any,
+    Positive,
+    NonNegative,
+    /// Within one turn to either side.
+    Angle,
+}
+
+impl Bound {
+    pub fn admits(self, x: f64) -> bool {
+        match self {
+            Self::Any => true,
+            Self::Positive => x > 0.0,
+            Self::NonNegative => x >= 0.0,
+            Self::Angle => x.abs() <= std::f64::consts::TAU,
+        }
+    }
+
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Any => "finite",
+            Self::Positive => "greater than 0",
+            Self::NonNegative => "0 or more",
+            Self::Angle => "between -2π and 2π",
+        }
+    }
+}
+
+impl Key {
+    pub const fn new(
+        name: &'static str,
+        kind: Kind,
+        unit: &'static str,
+        doc: &'static str,
+    ) -> Self {
+        Self {
+            name,
+            kind,
+            unit,
+            default: None,
+            doc,
+        }
+    }
+
+    /// The key may be absent; then this is used.
+    pub const fn or(mut self, default: &'static str) -> Self {
+        self.default = Some(default);
+        self
+    }
+
+    /// How the key is written, with its unit: `range = [lowest, highest]  # rad`.
+    pub fn template(&self) -> String {
+        let comment = if self.unit.is_empty() {
+            String::new()
+        } else {
+            format!("  # {}", self.unit)
+        };
+        match self.kind {
+            Kind::Map(_) => format!("[{}.<name>]", self.name),
+            _ => format!("{} = {}{comment}", self.name, self.kind.shape()),
+        }
+    }
+}
+
+impl Kind {
+    /// A value of this kind with the user's part left open.
+    pub fn shape(&self) -> String {
+        match self {
+            Self::Text | Self::Name => "\"…\"".into(),
+            Self::Choice(words) => words
+                .iter()
+                .map(|w| format!("\"{w}\""))
+                .collect::<Vec<_>>()
+                .join(" or "),
+            Self::Order(orders) => orders
+                .iter()
+                .map(i64::to_string)
+                .collect::<Vec<_>>()
+                .join(" or "),
+            Self::Number(_) | Self::Com => "…".into(),
+            Self::Vector => "[x, y, z]".into(),
+            Self::Pair(_) => "[lowest, highest]".into(),
+            Self::Choices(words) => {
+                let words: Vec<_> = words.iter().take(2).map(|w| format!("\"{w}\"")).collect();
+                format!("[{}, …]", words.join(", "))
+            }
+            Self::NameLists => "[[\"…\", \"…\"], [\"…\", \"…\"]]".into(),
+            Self::Coordinate => "\"platform\" or \"leg1.<joint>\"".into(),
+            Self::Table(table) => {
+                let keys = table.keys.iter().filter(|k| k.default.is_none());
+                let parts: Vec<_> = keys
+                    .map(|k| format!("{} = {}", k.name, k.kind.shape()))
+                    .collect();
+                format!("{{ {} }}", parts.join(", "))
+            }
+            Self::Map(_) => "{ <name> = { … } }".into(),
+        }
+    }
+
+    /// The kind in words, for "expected …".
+    pub const fn words(&self) -> &'static str {
+        match self {
+            Self::Text | Self::Name | Self::Choice(_) | Self::Coordinate => "a text in quotes",
+            Self::Order(_) => "a whole number",
+            Self::Number(_) => "a number",
+            Self::Vector => "three numbers",
+            Self::Pair(_) => "two numbers",
+            Self::Com => "a number or three numbers",
+            Self::Choices(_) => "a list of texts",
+            Self::NameLists => "two lists of names",
+            Self::Table(_) | Self::Map(_) => "a table",
+        }
+    }
+}

@@ -1,0 +1,43 @@
+//! The first pass: TOML text → a validated [`Robot`] and its [`Gait`]s, or every mistake with its place.
+//!
+//! `robot.toml` describes the real robot once: its links, joints, legs and actuators. A gait file says which
+//! legs move together, how the platform may move, which coordinate is unactuated, and the limits. The format
+//! is defined in `format.rs`, from which [`robot_schema`] and [`gait_schema`] are written; what a spec must
+//! satisfy beyond its form is checked in `bodies.rs`, `tree.rs`, `chain.rs` (robot), `pairing.rs`, `mirror.rs` and
+//! `coordinates.rs` (gait).
+//!
+//! A quantity with a unit never has a default, with one exception: a platform's mass centre lies at the
+//! origin of the frame of the legs' mounts unless `com` says otherwise. Other defaults: a joint's `axis` is
+//! pitch, a leg's `first_joint` is the only joint that hangs on the platform, a gait's `name` is its file's
+//! name and its `polynomial_order` is 4.
+
+mod bodies;
+mod chain;
+mod code;
+mod coordinates;
+mod decode;
+mod diagnostic;
+mod field;
+mod format;
+mod gait;
+mod keys;
+mod mirror;
+mod name;
+mod nearest;
+mod pairing;
+mod robot;
+mod schema;
+mod syntax;
+mod tree;
+mod types;
+mod view;
+
+#[cfg(test)]
+mod tests;
+
+pub use code::Code;
+pub use diagnostic::{Diagnostic, Label, Source, Span};
+pub use gait::parse_gait;
+pub use robot::{RobotFile, parse_robot};
+pub use schema::{gait_schema, robot_schema};
+pub use types::*;

@@ -1,0 +1,142 @@
+//! A validated specification: plain values, every reference resolved, nothing left to check.
+//!
+//! Frames: body axes x forward, y up, z to the right, all joints at zero = legs straight down.
+//! SI units, except motor speeds (rev/min), which is how data sheets state them.
+
+/// The real robot: a platform and its legs, in real-leg values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Robot {
+    pub name: String,
+    /// Magnitude of gravity, m/s², along −y.
+    pub gravity: f64,
+    pub platform: Platform,
+    pub legs: Vec<Leg>,
+}
+
+/// The platform (trunk). The gaits' coordinates `p` are those of its mass centre.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Platform {
+    pub name: String,
+    pub mass: f64,
+    /// Mass centre in the frame in which the legs' mounts are given, m.
+    pub com: [f64; 3],
+    /// Moments about the mass centre: roll (x), yaw (y), pitch (z), kg·m².
+    pub inertia: [f64; 3],
+}
+
+/// One real leg: a chain of joint + link, from the mount down to the foot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Leg {
+    pub name: String,
+    /// First joint in the platform's frame, m.
+    pub mount: [f64; 3],
+    pub chain: Vec<Segment>,
+}
+
+/// A joint and the link that it carries.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Segment {
+    pub joint: Joint,
+    pub link: Link,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Joint {
+    pub name: String,
+    pub axis: Axis,
+    /// Lower and upper stop, rad.
+    pub range: [f64; 2],
+    pub actuator: Actuator,
+}
+
+/// A body axis; a joint turns positively about it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Axis {
+    /// x, forward.
+    Roll,
+    /// y, up.
+    Yaw,
+    /// z, to the right.
+    Pitch,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Link {
+    pub name: String,
+    pub mass: f64,
+    /// Joint to joint (last link: joint to foot), along −y of the link, m.
+    pub length: f64,
+    /// Mass centre from the proximal joint, in link axes, m.
+    pub com: [f64; 3],
+    /// Moments about the mass centre in link axes: lateral (x), axial (y), swing (z), kg·m².
+    pub inertia: [f64; 3],
+}
+
+/// The actuator of a virtual leg's joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Actuator {
+    pub name: String,
+    /// Motor turns per joint turn.
+    pub gear: f64,
+    /// At the motor, N·m.
+    pub max_torque: f64,
+    /// Motor speed limits at no torque and at `max_torque`, rev/min.
+    pub unloaded_speed: f64,
+    pub loaded_speed: f64,
+    /// At the motor, kg·m² (acts on the joint times gear²).
+    pub rotor_inertia: f64,
+}
+
+/// How a gait uses the robot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gait {
+    pub name: String,
+    /// Indices into `Robot::legs`: the real legs that make up virtual leg 1 and 2.
+    pub virtual_legs: [Vec<usize>; 2],
+    /// Whether the platform also moves sideways (z).
+    pub lateral: bool,
+    pub rotation: Rotation,
+    pub unactuated: Unactuated,
+    pub half_steps: HalfSteps,
+    /// Order of the joint polynomials (eq. 15): 4, 6 or 8.
+    pub polynomial_order: usize,
+    pub limits: Limits,
+}
+
+/// How the platform may rotate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rotation {
+    None,
+    /// About Zf.
+    Pitch,
+    /// About Xf.
+    Roll,
+}
+
+/// The coordinate β that no actuator drives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unactuated {
+    /// The platform's rotation.
+    Platform,
+    /// A leg's first joint, where the platform does not rotate: `leg` 0 or 1, `joint` in its chain.
+    Joint { leg: usize, joint: usize },
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HalfSteps {
+    /// The legs swap roles after each half step: one half step defines the gait.
+    Mirrored,
+    /// Two different half steps.
+    Distinct,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limits {
+    pub friction: f64,
+    /// N.
+    pub min_vertical_force: f64,
+    /// Height of the swing parabola, m.
+    pub swing_clearance: f64,
+    /// Shortest and longest half step, s.
+    pub half_step_duration: [f64; 2],
+}

@@ -1,0 +1,236 @@
+//! A TOML table seen through its form (`format.rs`): unknown and missing keys are reported as it is opened.
+//! Its values are read by the getters in `decode.rs`.
+
+use toml::de::{DeTable, DeValue};
+
+use super::Code;
+use super::diagnostic::{At, Sink, Span};
+use super::field::{Field, found};
+use super::keys::{Key, Kind, Table};
+use super::name;
+use super::nearest::nearest;
+
+/// One table of the file together with its form.
+pub(super) struct View<'t> {
+    entries: &'t DeTable<'t>,
+    form: &'static Table,
+    /// Dotted path for messages, empty at the root.
+    path: String,
+    /// Where the table is named.
+    pub at: Span,
+}
+
+impl<'t> View<'t> {
+    /// Takes hold of a table; reports its unknown and its missing keys.
+    pub fn open(
+        entries: &'t DeTable<'t>,
+        form: &'static Table,
+        path: String,
+        at: Span,
+        sink: &mut Sink,
+    ) -> Self {
+        let view = Self {
+            entries,
+            form,
+            path,
+            at,
+        };
+        view.check_keys(sink);
+        view
+    }
+
+    fn check_keys(&self, sink: &mut Sink) {
+        let known = || self.form.keys.iter().map(|k| k.name);
+        let mut meant = Vec::new();
+        for (key, span) in self.names() {
+            if known().any(|k| k == key) {
+                continue;
+            }
+            let absent = known().filter(|k| !self.entries.contains_key(*k));
+            let suggestion = nearest(key, absent).or_else(|| nearest(key, known()));
+            let help = match suggestion {
+                Some(near) if self.entries.contains_key(near) => {
+                    format!("`{near}` is there already: remove `{key}`")
+                }
+                Some(near) => format!("did you mean `{near}`?"),
+                None => {
+                    let all: Vec<_> = known().map(|k| format!("`{k}`")).collect();
+                    format!("the keys of {} are {}", self.form.noun, all.join(", "))
+                }
+            };
+            meant.extend(suggestion);
+            let title = format!("unknown key `{}`", self.join(key));
+            sink.report(
+                Code::UnknownKey,
+                title,
+                &span,
+                format!("not a key of {}", self.form.noun),
+                help,
+            );
+        }
+        self.check_missing(&meant, sink);
+    }
+
+    /// Reports the absent keys, except those that an unknown key was meant to be.
+    fn check_missing(&self, meant: &[&str], sink: &mut Sink) {
+        let missing: Vec<&Key> = self
+            .form
+            .keys
+            .iter()
+            .filter(|k| {
+                k.default.is_none()
+                    && !self.entries.contains_key(k.name)
+                    && !meant.contains(&k.name)
+            })
+            .collect();
+        if missing.is_empty() {
+            return;
+        }
+        let names: Vec<_> = missing.iter().map(|k| format!("`{}`", k.name)).collect();
+        let names = names.join(", ");
+        let title = if self.path.is_empty() {
+            format!("{} needs {names}", self.form.noun)
+        } else {
+            format!("`{}` needs {names}", self.path)
+        };
+        let lines: Vec<_> = missing.iter().map(|k| k.template()).collect();
+        let (label, help) = match &lines[..] {
+            [line] => ("a key is missing here", format!("add {line}")),
+            _ => (
+                "keys are missing here",
+                format!("add\n{}", lines.join("\n")),
+            ),
+        };
+        sink.report(Code::MissingKey, title, &self.at, label, help);
+    }
+
+    /// All keys with their places, in the order of the file.
+    pub fn names(&self) -> Vec<(&'t str, Span)> {
+        let mut names: Vec<_> = self
+            .entries
+            .iter()
+            .map(|(k, _)| (k.get_ref().as_ref(), k.span()))
+            .collect();
+        names.sort_by_key(|(_, span)| span.start);
+        names
+    }
+
+    /// Whether the table was read as one of this form.
+    pub fn is(&self, form: &'static Table) -> bool {
+        std::ptr::eq(self.form, form)
+    }
+
+    pub fn has(&self, name: &str) -> bool {
+        self.entries.contains_key(name)
+    }
+
+    /// Which tables of a map have the key `inner`; reports nothing.
+    pub fn peek(&self, name: &str, inner: &str) -> Vec<(String, bool)> {
+        let Some(DeValue::Table(entries)) = self.entries.get(name).map(|v| v.get_ref()) else {
+            return Vec::new();
+        };
+        let has = |value: &DeValue<'_>| value.as_table().is_some_and(|t| t.contains_key(inner));
+        entries
+            .iter()
+            .map(|(key, value)| (key.get_ref().to_string(), has(value.get_ref())))
+            .collect()
+    }
+
+    /// How long the list under a key is, if it is one, and where it stands.
+    pub fn list_length(&self, name: &str) -> Option<(usize, Span)> {
+        let value = self.entries.get(name)?;
+        value
+            .get_ref()
+            .as_array()
+            .map(|items| (items.len(), value.span()))
+    }
+
+    /// Dotted path of a key of this table.
+    pub fn join(&self, key: &str) -> String {
+        if self.path.is_empty() {
+            key.to_string()
+        } else {
+            format!("{}.{key}", self.path)
+        }
+    }
+
+    /// The key's definition, its value and where that stands.
+    pub fn field(&self, name: &str) -> Option<Field<'t>> {
+        let key = self.form.keys.iter().find(|k| k.name == name)?;
+        let value = self.entries.get(name)?;
+        Some(Field {
+            path: self.join(name),
+            key,
+            value: value.get_ref(),
+            span: value.span(),
+        })
+    }
+
+    /// Where the key's name stands.
+    pub fn key_span(&self, name: &str) -> Span {
+        self.entries
+            .get_key_value(name)
+            .map_or(self.at.clone(), |(key, _)| key.span())
+    }
+
+    /// A table of a known form.
+    pub fn table(&self, name: &str, sink: &mut Sink) -> Option<View<'t>> {
+        let field = self.field(name)?;
+        let (Kind::Table(form), DeValue::Table(entries)) = (&field.key.kind, field.value) else {
+            return field.wrong_type(sink);
+        };
+        Some(View::open(
+            entries,
+            form,
+            field.path,
+            self.key_span(name),
+            sink,
+        ))
+    }
+
+    /// The named tables of a map, in the order of the file; `form` picks each one's form.
+    pub fn map(
+        &self,
+        name: &str,
+        sink: &mut Sink,
+        mut form: impl FnMut(&str, &DeTable<'t>) -> &'static Table,
+    ) -> Option<Vec<(At<String>, Option<View<'t>>)>> {
+        let field = self.field(name)?;
+        let DeValue::Table(entries) = field.value else {
+            return field.wrong_type(sink);
+        };
+        let mut names: Vec<_> = entries.iter().collect();
+        names.sort_by_key(|(key, _)| key.span().start);
+        let views = names
+            .into_iter()
+            .map(|(key, value)| {
+                let child = At {
+                    value: key.get_ref().to_string(),
+                    span: key.span(),
+                };
+                name::check(&child, sink);
+                let path = format!("{}.{}", field.path, child.value);
+                let view = match value.get_ref() {
+                    DeValue::Table(inner) => {
+                        let form = form(&child.value, inner);
+                        Some(View::open(inner, form, path, key.span(), sink))
+                    }
+                    other => {
+                        let title = format!("`{path}` must be a table, not {}", found(other));
+                        let help = format!("write [{path}], and its keys on the lines below");
+                        sink.report(
+                            Code::WrongType,
+                            title,
+                            &value.span(),
+                            "expected a table",
+                            help,
+                        );
+                        None
+                    }
+                };
+                (child, view)
+            })
+            .collect();
+        Some(views)
+    }
+}

@@ -1,0 +1,10 @@
+//! Optimal periodic gaits of legged robots, from a declarative description, with a receipt for each.
+
+#![forbid(unsafe_code)]
+
+pub mod model;
+
+/// Generated dynamics: one module per gait of `model-spec`.
+pub mod gaits {
+    include!(concat!(env!("OUT_DIR"), "/gaits.rs"));
+}

@@ -1,0 +1,221 @@
+//! The interface between generated dynamics and everything that uses them.
+//!
+//! A build generates one type per gait that implements [`Gait`]. Kernels take slices and write their
+//! outputs, one after another and row-major, into `out`; the generated modules also have every
+//! kernel as a function over arrays, with its documentation and operation counts. Coordinates,
+//! frames and units: X = [p, q], world axes Xf forward, Yf up, Zf to the right; SI.
+
+/// What a gait is made of, in numbers.
+#[derive(Clone, Debug)]
+pub struct Description {
+    pub gait: &'static str,
+    pub robot: &'static str,
+    /// m/s², along −Yf.
+    pub gravity: f64,
+    /// Whether p has a z.
+    pub lateral: bool,
+    pub rotation: Rotation,
+    pub half_steps: HalfSteps,
+    /// Parents precede children; body 0 is the platform.
+    pub bodies: &'static [Body],
+    pub joints: &'static [Joint],
+    pub legs: [Leg; 2],
+    /// Index of β in q.
+    pub unactuated: usize,
+    /// Order of the joint polynomials (eq. 15).
+    pub polynomial_order: usize,
+    /// Length of the early values of each stance leg.
+    pub early: [usize; 2],
+    pub limits: Limits,
+    /// What each generated kernel costs.
+    pub operations: &'static [Operations],
+}
+
+/// How the platform may rotate: θ is the last of q, about Zf or about Xf.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rotation {
+    None,
+    Pitch,
+    Roll,
+}
+
+/// Whether one half step defines the gait.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HalfSteps {
+    /// The legs swap roles after each half step.
+    Mirrored,
+    /// Two different half steps, on leg 1 and on leg 2.
+    Distinct,
+}
+
+/// A rigid body and the joint that carries it.
+#[derive(Clone, Debug)]
+pub struct Body {
+    pub name: &'static str,
+    pub parent: Option<usize>,
+    /// Index of its joint's coordinate in q.
+    pub coordinate: Option<usize>,
+    /// Axis of its joint: 0, 1, 2 for x, y, z.
+    pub axis: usize,
+    /// Its joint in the parent's axes, m.
+    pub offset: [f64; 3],
+    pub mass: f64,
+    /// Mass centre from its joint in its own axes, m.
+    pub com: [f64; 3],
+    /// Moments about the mass centre, kg·m².
+    pub inertia: [f64; 3],
+}
+
+/// An actuated joint; N·m, rad and rad/s at the joint.
+#[derive(Clone, Debug)]
+pub struct Joint {
+    pub name: &'static str,
+    pub range: [f64; 2],
+    pub gear: f64,
+    pub max_torque: f64,
+    pub unloaded_speed: f64,
+    /// Speed limit at `max_torque`.
+    pub loaded_speed: f64,
+    pub rotor_inertia: f64,
+}
+
+/// A virtual leg.
+#[derive(Clone, Debug)]
+pub struct Leg {
+    pub first_joint: usize,
+    pub end_joint: usize,
+    pub foot_body: usize,
+    /// Foot from the joint of `foot_body`, m.
+    pub foot: [f64; 3],
+}
+
+/// Limits of §6.1.
+#[derive(Clone, Debug)]
+pub struct Limits {
+    pub friction: f64,
+    /// N.
+    pub min_vertical_force: f64,
+    /// Height of the swing parabola, m.
+    pub swing_clearance: f64,
+    /// s.
+    pub half_step_duration: [f64; 2],
+}
+
+/// Floating-point operations of a generated kernel.
+#[derive(Clone, Copy, Debug)]
+pub struct Operations {
+    pub kernel: &'static str,
+    pub flops: usize,
+    pub divisions: usize,
+    pub sincos: usize,
+}
+
+impl Description {
+    /// Number of joints.
+    pub fn joints(&self) -> usize {
+        self.joints.len()
+    }
+
+    /// Number of position coordinates p, and of components of a reaction.
+    pub fn positions(&self) -> usize {
+        if self.lateral { 3 } else { 2 }
+    }
+
+    /// Number of coordinates q: joints, then θ where the platform rotates.
+    pub fn orientations(&self) -> usize {
+        self.joints.len() + usize::from(self.rotation != Rotation::None)
+    }
+
+    /// Number of prescribed coordinates Q: all of q but β.
+    pub fn prescribed(&self) -> usize {
+        self.orientations() - 1
+    }
+
+    /// Index in q of the k-th prescribed coordinate.
+    pub fn prescribed_index(&self, k: usize) -> usize {
+        if k < self.unactuated { k } else { k + 1 }
+    }
+
+    pub fn total_mass(&self) -> f64 {
+        self.bodies.iter().map(|b| b.mass).sum()
+    }
+
+    /// Number of half steps that define the gait.
+    pub fn phases(&self) -> usize {
+        match self.half_steps {
+            HalfSteps::Mirrored => 1,
+            HalfSteps::Distinct => 2,
+        }
+    }
+
+    /// Joints whose torques are independent. Where the platform does not rotate, the unactuated
+    /// joint's torque balances the others on the platform (eq. 1).
+    pub fn independent_torques(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.joints.len()).filter(|j| *j != self.unactuated)
+    }
+
+    /// Where the coordinate `k` of q comes from when the legs swap roles: index and sign.
+    pub fn swapped(&self, k: usize) -> (usize, f64) {
+        let [a, b] = &self.legs;
+        if k >= self.joints.len() {
+            return (k, if self.rotation == Rotation::Roll { -1.0 } else { 1.0 });
+        }
+        let from = if k < b.first_joint { b.first_joint + (k - a.first_joint) } else { a.first_joint + (k - b.first_joint) };
+        (from, 1.0)
+    }
+}
+
+/// Generated dynamics of one gait. `leg` is 0 or 1: the leg in support, or the leg named.
+pub trait Gait: Sync {
+    fn description(&self) -> &'static Description;
+
+    /// A(q): n × n.
+    fn inertia(&self, q: &[f64], out: &mut [f64]);
+    /// H(q, q̇): n.
+    fn bias(&self, q: &[f64], qd: &[f64], out: &mut [f64]);
+    /// A, then H.
+    fn inertia_and_bias(&self, q: &[f64], qd: &[f64], out: &mut [f64]);
+    /// Kinetic, potential energy.
+    fn energy(&self, x: &[f64], xd: &[f64], out: &mut [f64]);
+    /// Foot position d.
+    fn foot(&self, leg: usize, x: &[f64], out: &mut [f64]);
+    /// D: n × nc.
+    fn foot_jacobian(&self, leg: usize, q: &[f64], out: &mut [f64]);
+    /// Hᵢ: nc.
+    fn foot_bias(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]);
+    /// σ about the foot, absolute velocities.
+    fn angular_momentum(&self, leg: usize, x: &[f64], xd: &[f64], out: &mut [f64]);
+
+    /// ṗ with the stance foot at rest.
+    fn platform_velocity(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]);
+    /// f1, f2, σ, c, σ̇ (eq. 8, 9).
+    fn momentum_terms(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]);
+    /// Aq, Hq (eq. 6).
+    fn reduced(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]);
+    /// Ẍ, F from the independent torques.
+    fn forward(&self, leg: usize, q: &[f64], qd: &[f64], gamma: &[f64], out: &mut [f64]);
+    /// Ẍ, Γ (all joints), F from Q̈.
+    fn inverse(&self, leg: usize, q: &[f64], qd: &[f64], actuated_dd: &[f64], out: &mut [f64]);
+    /// σ, ∂σ/∂(q, q̇).
+    fn momentum(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]);
+    /// β̈, Γ, F, ∂(Γ, F, balance)/∂(q, q̇, q̈).
+    fn inverse_jacobian(&self, leg: usize, q: &[f64], qd: &[f64], actuated_dd: &[f64], out: &mut [f64]);
+    /// p, swing foot, ∂p/∂q, ∂swing/∂q; from the stance foot.
+    fn placement(&self, leg: usize, q: &[f64], out: &mut [f64]);
+    /// Swing foot's velocity, its Jacobian in (q, q̇).
+    fn swing_velocity(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]);
+
+    /// What eq. 8 and 9 need of (Q, Q̇) alone.
+    fn early(&self, leg: usize, actuated: &[f64], actuated_d: &[f64], out: &mut [f64]);
+    /// f1, f2, σ̇, then their derivatives in β.
+    fn late(&self, leg: usize, early: &[f64], beta: f64, out: &mut [f64]);
+    /// ∂f1/∂Q, ∂f2/∂Q, ∂f2/∂Q̇, ∂σ̇/∂Q.
+    fn late_gradient(&self, leg: usize, early: &[f64], beta: f64, out: &mut [f64]);
+
+    /// Impact on the foot of `leg` (eq. 12): Ẋ⁺, impulse.
+    fn impact(&self, leg: usize, q: &[f64], xd: &[f64], out: &mut [f64]);
+    /// Impact on the foot of `leg` after support on the other: q̇⁺, impulse, leaving, landing, Jacobian in (q, q̇⁻).
+    fn touchdown(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]);
+    /// Both feet stay (eq. 11): Ẋ⁺, impulses on foot 1 and 2, pivots, scale.
+    fn impact_both(&self, q: &[f64], xd: &[f64], out: &mut [f64]);
+}

@@ -1,0 +1,90 @@
+//! A positive definite stand-in for the exact Hessian W that costs as little of Newton's convergence as possible.
+//!
+//! Only the curvature along the active constraints matters. By Finsler's lemma W + γAᵀA is positive definite for large γ
+//! exactly if W is so on the null space of the active normals A; and because (γ/2)‖Ad + b‖² vanishes on Ad + b = 0, adding it
+//! to the subproblem (with its linear part γAᵀb) changes neither step nor multipliers as long as these constraints stay active.
+//! Only if that fails too is the diagonal shifted, W + γAᵀA + δI, and δ then remembered (as in Ipopt, Wächter & Biegler 2006).
+
+use super::dense::{axpy, cholesky, max_abs, rank_one};
+use super::qp::{Place, Quadratic};
+
+#[derive(Clone, Debug)]
+pub(super) struct Convexifier {
+    l: Vec<f64>,
+    augmented: Vec<f64>,
+    active: Vec<usize>,
+    shift: f64,
+}
+
+impl Convexifier {
+    pub(super) fn new(n: usize) -> Self {
+        Self { l: vec![0.0; n * n], augmented: vec![0.0; n * n], active: Vec::new(), shift: 0.0 }
+    }
+
+    /// Writes the stand-in for `w` and its linear part into `qp` (whose gradient must be ∇f), and adds the shift to `w`
+    /// itself, so that `w` remains the curvature of the model. The rows to count on are those that `qp` hints at.
+    pub(super) fn convexify(&mut self, w: &mut [f64], qp: &mut Quadratic, augment: bool) {
+        let n = qp.n;
+        self.active.clear();
+        self.active.extend((0..qp.len()).filter(|i| augment && qp.hints[2 * n + i] == Place::Working));
+        let size = max_abs(w).max(1e-8);
+        // Barely definite is not enough: the steps of the active-set method would be noise.
+        let floor = 1e-8 * size;
+        if self.definite(w, n, floor) {
+            qp.hessian.copy_from_slice(w);
+            self.shift = 0.0;
+            return;
+        }
+        let mut gamma = 0.0;
+        for candidate in [1e1, 1e3] {
+            self.augmented.copy_from_slice(w);
+            for &i in &self.active {
+                rank_one(candidate * size, qp.row(i), &mut self.augmented);
+            }
+            let augmented = std::mem::take(&mut self.augmented);
+            let definite = self.definite(&augmented, n, floor);
+            self.augmented = augmented;
+            gamma = candidate * size;
+            if definite {
+                break;
+            }
+        }
+        let augmented = std::mem::take(&mut self.augmented);
+        let mut delta = 0.0;
+        if !self.definite(&augmented, n, floor) {
+            // γ as large as this would only make the shifted matrix ill-conditioned: W + δI alone.
+            gamma = 0.0;
+            delta = if self.shift > 0.0 { self.shift / 3.0 } else { 1e-3 * size };
+            while !self.definite_shifted(w, n, delta, floor) && delta < 1e3 * size {
+                delta *= 3.0;
+            }
+            self.shift = delta;
+            w.iter_mut().step_by(n + 1).for_each(|w| *w += delta);
+        }
+        self.augmented = augmented;
+        if delta > 0.0 {
+            qp.hessian.copy_from_slice(w);
+        } else {
+            qp.hessian.copy_from_slice(&self.augmented);
+            for &i in &self.active {
+                let b = qp.constants[i];
+                axpy(gamma * b, &qp.rows[i * n..(i + 1) * n], &mut qp.gradient);
+            }
+        }
+    }
+
+    fn definite(&mut self, a: &[f64], n: usize, floor: f64) -> bool {
+        // The smallest squared pivot bounds the smallest eigenvalue from above; near enough as a safeguard.
+        cholesky(a, n, &mut self.l) && (0..n).all(|i| self.l[i * n + i] * self.l[i * n + i] > floor)
+    }
+
+    fn definite_shifted(&mut self, a: &[f64], n: usize, delta: f64, floor: f64) -> bool {
+        self.augmented.resize(n * n, 0.0);
+        self.augmented.copy_from_slice(a);
+        self.augmented.iter_mut().step_by(n + 1).for_each(|a| *a += delta);
+        let shifted = std::mem::take(&mut self.augmented);
+        let definite = self.definite(&shifted, n, floor);
+        self.augmented = shifted;
+        definite
+    }
+}

@@ -1,0 +1,150 @@
+//! The direction of an iterate: one quadratic program, or a few where its constraints contradict each other.
+//!
+//! The first solve caps every multiplier at a price so high that a constraint gives way only if it must. If none does, the step
+//! is that of the plain program. Otherwise its linear violation is (nearly) the best that any step can do, and the penalty is
+//! *steered* (Byrd, Nocedal & Waltz 2008): starting from the present one, raised until the step achieves a fair share of it.
+
+use super::dense::{dot, max_abs, multiply};
+use super::merit::Promise;
+use super::minimize::{Phase, Run};
+use super::screening::Trouble;
+use super::{Kind, Problem};
+
+/// Price of a violation, in units of ‖∇f‖∞, at which constraints give way only if they contradict each other.
+const PROHIBITIVE: f64 = 1e6;
+/// Share of the best possible relief that an elastic step must achieve.
+const FAIR: f64 = 0.3;
+/// If the best relief is a smaller share of the violation than this, the objective has to wait.
+const HOPELESS: f64 = 0.1;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Direction {
+    /// `Run::d`, with its promise.
+    Step,
+    /// The iterate satisfies the optimality conditions of its phase with the new multipliers.
+    Stationary,
+    /// No descent direction was found.
+    None,
+}
+
+impl<P: Problem> Run<'_, '_, P> {
+    pub(super) fn direction(&mut self) -> Result<Direction, Trouble> {
+        match self.phase {
+            Phase::Optimality => self.towards_optimality(),
+            Phase::Feasibility { from } => {
+                let improved = self.point.violation <= 0.9 * from || self.kkt.violation <= self.options.feasibility;
+                if improved && self.plain_step(true).is_ok() && !self.subproblem.yielding {
+                    // The linearized constraints agree again: the objective is back.
+                    self.phase = Phase::Optimality;
+                    return Ok(self.conclude(Kind::Exact));
+                }
+                self.towards_feasibility()
+            }
+        }
+    }
+
+    fn towards_optimality(&mut self) -> Result<Direction, Trouble> {
+        self.plain_step(true)?;
+        if !self.subproblem.yielding {
+            let direction = self.conclude(Kind::Exact);
+            if !self.exact || direction != Direction::None {
+                return Ok(direction);
+            }
+            // The convexification counted on constraints that turned out inactive.
+            self.plain_step(false)?;
+            if !self.subproblem.yielding {
+                return Ok(self.conclude(Kind::Exact));
+            }
+        }
+        let violation = self.point.violation;
+        let best = self.subproblem.linear_violation;
+        if self.kkt.violation > self.options.feasibility && violation - best <= HOPELESS * violation {
+            self.look_at_violation();
+            return self.towards_feasibility();
+        }
+        if self.exact {
+            self.plain_step(false)?;
+        }
+        let prohibitive = self.prohibitive();
+        let mut penalty = self.merit.high;
+        loop {
+            self.subproblem.cap(penalty);
+            self.subproblem.solve_again(&self.view)?;
+            let relief = violation - self.subproblem.linear_violation;
+            if !self.subproblem.yielding || relief >= FAIR * (violation - best) || penalty >= prohibitive {
+                break;
+            }
+            penalty *= 10.0;
+        }
+        self.merit.raise(penalty);
+        Ok(self.conclude(Kind::Elastic))
+    }
+
+    fn prohibitive(&self) -> f64 {
+        PROHIBITIVE * max_abs(&self.gradient).max(1.0).max(1e-3 * self.merit.high)
+    }
+
+    /// Solves the subproblem of the optimality phase with prohibitive prices.
+    fn plain_step(&mut self, augment: bool) -> Result<(), Trouble> {
+        self.set_bounds();
+        self.subproblem.qp.gradient.copy_from_slice(&self.gradient);
+        if self.exact && self.phase == Phase::Optimality {
+            self.exact = self.view.hessian(&self.lambda, &self.mu, &mut self.curvature);
+        }
+        if self.exact && self.phase == Phase::Optimality {
+            self.convexifier.convexify(&mut self.curvature, &mut self.subproblem.qp, augment);
+        } else {
+            self.curvature.copy_from_slice(&self.lagrangian_model.b);
+            self.subproblem.qp.hessian.copy_from_slice(&self.curvature);
+        }
+        self.subproblem.cap(self.prohibitive());
+        self.subproblem.solve(&self.view, &self.point)
+    }
+
+    /// The step that reduces the violation alone: a proximal ℓ1 model of it.
+    fn towards_feasibility(&mut self) -> Result<Direction, Trouble> {
+        self.set_bounds();
+        self.subproblem.qp.gradient.fill(0.0);
+        self.curvature.copy_from_slice(&self.violation_model.b);
+        self.subproblem.qp.hessian.copy_from_slice(&self.curvature);
+        self.subproblem.cap(1.0);
+        self.subproblem.solve(&self.view, &self.point)?;
+        Ok(self.conclude(Kind::Feasibility))
+    }
+
+    fn set_bounds(&mut self) {
+        let limit = self.options.step_limit;
+        let qp = &mut self.subproblem.qp;
+        for (j, z) in self.point.z.iter().enumerate() {
+            qp.lower[j] = (self.lower[j] - z).max(-limit).min(0.0);
+            qp.upper[j] = (self.upper[j] - z).min(limit).max(0.0);
+        }
+    }
+
+    /// Takes over the subproblem's step, multipliers and promise.
+    fn conclude(&mut self, kind: Kind) -> Direction {
+        self.kind = kind;
+        self.d.copy_from_slice(&self.subproblem.step.d);
+        multiply(&self.curvature, &self.d, &mut self.trial_gradient);
+        let optimality = self.phase == Phase::Optimality;
+        self.promise = Promise {
+            slope: if optimality { dot(&self.gradient, &self.d) } else { 0.0 },
+            curvature: dot(&self.d, &self.trial_gradient).max(0.0),
+            relief: self.point.violation - self.subproblem.linear_violation,
+        };
+        self.adopt_multipliers();
+        if optimality {
+            if self.optimal() {
+                return Direction::Stationary;
+            }
+            self.merit.prepare(&self.promise);
+            let descends = self.promise.reduction(self.merit.high) > 0.0;
+            return if descends { Direction::Step } else { Direction::None };
+        }
+        let hopeless = self.promise.relief <= 0.01 * self.point.violation;
+        if hopeless && self.kkt.stationarity <= self.options.tolerance && self.kkt.violation > self.options.feasibility {
+            return Direction::Stationary;
+        }
+        if self.promise.reduction(1.0) > 0.0 { Direction::Step } else { Direction::None }
+    }
+}

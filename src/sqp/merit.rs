@@ -1,0 +1,104 @@
+//! The ℓ1 merit function φ_ρ = f + ρ·v, v = Σ violations, with a flexible penalty (Curtis & Nocedal 2008): a step is good if
+//! it sufficiently reduces φ_ρ for *some* ρ of an interval [low, high]. φ is linear in ρ, so the two ends decide. Large ρ
+//! keeps every subproblem's step a descent direction; small ρ lets the objective speak early, as a filter would; the interval
+//! shrinks towards `high` whenever only `high` would do, so that in the end one merit function governs and no cycle survives.
+
+/// Fraction of the model's reduction that the functions must deliver.
+const SUFFICIENT: f64 = 1e-4;
+/// Share of the linearized violation's decrease that the model of φ must show.
+const SHARE: f64 = 0.1;
+
+#[derive(Clone, Debug)]
+pub(super) struct Merit {
+    pub(super) low: f64,
+    pub(super) high: f64,
+}
+
+/// What the subproblem promises for its full step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Promise {
+    /// ∇fᵀd.
+    pub(super) slope: f64,
+    /// dᵀHd ≥ 0.
+    pub(super) curvature: f64,
+    /// v(z) − v_linear(z + d).
+    pub(super) relief: f64,
+}
+
+impl Promise {
+    /// Reduction of the model of φ_ρ.
+    pub(super) fn reduction(&self, penalty: f64) -> f64 {
+        -self.slope - 0.5 * self.curvature + penalty * self.relief
+    }
+}
+
+impl Merit {
+    pub(super) fn new(penalty: f64) -> Self {
+        let high = if penalty.is_finite() && penalty > 0.0 { penalty } else { 1.0 };
+        Self { low: 1e-3 * high, high }
+    }
+
+    /// Raises the penalty until the promised reduction of φ is at least a share of ρ times the promised relief
+    /// (Nocedal & Wright eq. 18.36). `needed` never exceeds the largest multiplier by much.
+    pub(super) fn prepare(&mut self, promise: &Promise) {
+        if promise.relief > 0.0 {
+            let needed = (promise.slope + 0.5 * promise.curvature) / ((1.0 - SHARE) * promise.relief);
+            if needed.is_finite() && needed > self.high {
+                self.high = 1.5 * needed;
+            }
+        }
+    }
+
+    pub(super) fn raise(&mut self, penalty: f64) {
+        self.high = self.high.max(penalty);
+    }
+
+    /// Whether going from (f, v) to (f⁺, v⁺) with step length α keeps enough of the promise.
+    pub(super) fn accepts(&mut self, promise: &Promise, alpha: f64, from: (f64, f64), to: (f64, f64)) -> bool {
+        let keeps = |penalty: f64| {
+            let promised = promise.reduction(penalty);
+            // Changes below the functions' own rounding must not block the last steps.
+            let rounding = 1e-15 * (from.0.abs() + penalty * from.1).max(1e-300) * 10.0;
+            let change = (to.0 - from.0) + penalty * (to.1 - from.1);
+            promised >= -rounding && change <= -SUFFICIENT * alpha * promised.max(0.0) + rounding
+        };
+        let (by_low, by_high) = (promise.reduction(self.low) > 0.0 && keeps(self.low), keeps(self.high));
+        if by_high && !by_low && to.1 < from.1 {
+            // The price of violation at which this step breaks even.
+            let price = (to.0 - from.0) / (from.1 - to.1);
+            self.low = self.high.min(self.low + (0.1 * (price - self.low)).max(1e-4 * self.high));
+        }
+        by_low || by_high
+    }
+
+    /// A shorter step length from the parabola through φ(0), φ'(0) and φ(α).
+    pub(super) fn interpolate(&self, promise: &Promise, alpha: f64, from: (f64, f64), to: (f64, f64)) -> f64 {
+        let slope = promise.slope - self.high * promise.relief;
+        let change = (to.0 - from.0) + self.high * (to.1 - from.1);
+        let minimum = -0.5 * slope * alpha * alpha / (change - slope * alpha);
+        if minimum.is_finite() { minimum.clamp(0.1 * alpha, 0.5 * alpha) } else { 0.5 * alpha }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_penalty_makes_the_step_a_descent_direction() {
+        let mut merit = Merit::new(1.0);
+        let promise = Promise { slope: 5.0, curvature: 1.0, relief: 0.1 };
+        merit.prepare(&promise);
+        assert!(promise.reduction(merit.high) >= SHARE * merit.high * promise.relief);
+    }
+
+    #[test]
+    fn either_end_of_the_interval_may_accept() {
+        let mut merit = Merit { low: 0.01, high: 10.0 };
+        // Less f for more v: good for the low end only.
+        let promise = Promise { slope: -1.0, curvature: 0.5, relief: 0.1 };
+        assert!(merit.accepts(&promise, 1.0, (0.0, 0.1), (-0.7, 0.3)));
+        // More of both is good for neither.
+        assert!(!merit.accepts(&promise, 1.0, (0.0, 0.1), (0.1, 0.3)));
+    }
+}

@@ -1,0 +1,365 @@
+//! The main loop: measure, learn, find a direction, search along it.
+//!
+//! Two phases share it. *Optimality*: L = f − λᵀc_E − μᵀc_I and the merit function f + ρ·v. *Feasibility*: the same with f left
+//! out and ρ = 1, entered where the linearized constraints cannot be made (much) less violated and left as soon as they can; if
+//! that phase converges instead, the violation is stationary and the problem is (locally) infeasible.
+
+use super::convexify::Convexifier;
+use super::dense::{axpy, max_abs, norm};
+use super::direction::Direction;
+use super::kkt;
+use super::merit::{Merit, Promise};
+use super::quasi_newton::QuasiNewton;
+use super::scaled::{Point, Scaled};
+use super::screening::{Subproblem, Trouble};
+use super::{Conflict, Control, Iteration, Kind, KktResidual, Options, Problem, Solution, Status, Undefined, Values};
+
+/// Consecutive steps that change nothing before the solver admits it.
+const STALLS: usize = 4;
+
+/// Minimizes the problem from `x0` (moved into the bounds first). The observer sees every iterate and may stop the run.
+///
+/// Deterministic, single-threaded, never panics on what the problem's functions return; the solution's status is
+/// [`Status::Optimal`] only if [`Solution::kkt`] meets the tolerances.
+pub fn minimize<P: Problem>(
+    problem: &mut P,
+    x0: &[f64],
+    options: &Options,
+    observer: &mut dyn FnMut(&Iteration) -> Control,
+) -> Solution {
+    let (n, equalities, inequalities) = (problem.variables(), problem.equalities(), problem.inequalities());
+    let Some(view) = Scaled::new(problem, x0, options) else {
+        return Solution {
+            x: x0.to_vec(),
+            objective: f64::NAN,
+            values: Values::zeros(equalities, inequalities),
+            equality_multipliers: vec![0.0; equalities],
+            inequality_multipliers: vec![0.0; inequalities],
+            bound_multipliers: vec![0.0; n],
+            status: Status::Invalid,
+            iterations: 0,
+            evaluations: 0,
+            linearizations: 0,
+            interior_solves: 0,
+            kkt: KktResidual::UNKNOWN,
+            conflict: None,
+        };
+    };
+    Run::new(view, options).go(x0, observer)
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Phase {
+    Optimality,
+    /// Entered at this violation.
+    Feasibility { from: f64 },
+}
+
+/// All state of one optimization; nothing is allocated after `new` except by Clarabel.
+pub(super) struct Run<'a, 'p, P: Problem> {
+    pub(super) options: &'a Options,
+    pub(super) view: Scaled<'p, P>,
+    pub(super) lower: Vec<f64>,
+    pub(super) upper: Vec<f64>,
+    pub(super) subproblem: Subproblem,
+    pub(super) merit: Merit,
+    pub(super) phase: Phase,
+
+    /// The iterate, ∇f there, and the next candidate.
+    pub(super) point: Point,
+    pub(super) gradient: Vec<f64>,
+    pub(super) trial: Point,
+    pub(super) trial_gradient: Vec<f64>,
+
+    /// Multipliers: of the Lagrangian, or in the feasibility phase of the violation.
+    pub(super) lambda: Vec<f64>,
+    pub(super) mu: Vec<f64>,
+    pub(super) nu: Vec<f64>,
+    pub(super) kkt: KktResidual,
+
+    /// The subproblem's step and promise.
+    pub(super) d: Vec<f64>,
+    pub(super) promise: Promise,
+    pub(super) kind: Kind,
+    alpha: f64,
+    active: usize,
+
+    /// Curvature of the Lagrangian, of the violation, and of the Lagrangian by exact second derivatives.
+    pub(super) lagrangian_model: QuasiNewton,
+    pub(super) violation_model: QuasiNewton,
+    pub(super) exact: bool,
+    pub(super) convexifier: Convexifier,
+    pub(super) curvature: Vec<f64>,
+    pub(super) second: Vec<f64>,
+
+    /// ∇L at the former iterate with the present multipliers; pending until ∇L is known at the new one.
+    former: Vec<f64>,
+    s: Vec<f64>,
+    y: Vec<f64>,
+    pending: bool,
+    stalls: usize,
+}
+
+impl<'a, 'p, P: Problem> Run<'a, 'p, P> {
+    fn new(view: Scaled<'p, P>, options: &'a Options) -> Self {
+        let (n, equalities, inequalities) = (view.n, view.equalities, view.inequalities);
+        let (lower, upper) = view.bounds();
+        let zeros = || vec![0.0; n];
+        Self {
+            options,
+            lower,
+            upper,
+            subproblem: Subproblem::new(n, equalities, inequalities, options.subproblems),
+            merit: Merit::new(options.penalty),
+            phase: Phase::Optimality,
+            point: Point::new(n, equalities, inequalities),
+            gradient: zeros(),
+            trial: Point::new(n, equalities, inequalities),
+            trial_gradient: zeros(),
+            lambda: vec![0.0; equalities],
+            mu: vec![0.0; inequalities],
+            nu: zeros(),
+            kkt: KktResidual::UNKNOWN,
+            d: zeros(),
+            promise: Promise::default(),
+            kind: Kind::Start,
+            alpha: 0.0,
+            active: 0,
+            lagrangian_model: QuasiNewton::new(n),
+            violation_model: QuasiNewton::new(n),
+            exact: options.exact_hessian,
+            convexifier: Convexifier::new(n),
+            curvature: vec![0.0; n * n],
+            second: vec![0.0; n * n],
+            former: zeros(),
+            s: zeros(),
+            y: zeros(),
+            pending: false,
+            stalls: 0,
+            view,
+        }
+    }
+
+    fn go(mut self, x0: &[f64], observer: &mut dyn FnMut(&Iteration) -> Control) -> Solution {
+        if self.start(x0).is_err() {
+            return self.end(Status::Undefined, 0);
+        }
+        for k in 0.. {
+            if self.measure().is_err() {
+                return self.end(Status::Undefined, k);
+            }
+            if observer(&self.report(k)) == Control::Stop {
+                return self.end(Status::Stopped, k);
+            }
+            if self.optimal() {
+                return self.end(Status::Optimal, k);
+            }
+            if k == self.options.iteration_limit {
+                return self.end(Status::IterationLimit, k);
+            }
+            self.learn();
+            // A direction that leads nowhere is replaced by a humbler one: first without the model's memory, then without
+            // the objective.
+            let mut humility = 0;
+            loop {
+                let direction = match self.direction() {
+                    Ok(direction) => direction,
+                    Err(Trouble::Undefined) => return self.end(Status::Undefined, k),
+                    Err(Trouble::Unsolved(_)) => Direction::None,
+                };
+                match direction {
+                    Direction::Stationary if self.phase == Phase::Optimality => return self.end(Status::Optimal, k),
+                    Direction::Stationary => return self.end(Status::Infeasible, k),
+                    Direction::Step if self.search() => break,
+                    Direction::Step | Direction::None => {}
+                }
+                humility += 1;
+                if !self.humble(humility) {
+                    return self.end(Status::NoProgress, k);
+                }
+            }
+            self.advance();
+            if self.subproblem.gather(&self.view, &self.point, &self.mu).is_err() {
+                return self.end(Status::Undefined, k + 1);
+            }
+            if self.stalls >= STALLS {
+                let k = k + 1;
+                return match self.measure() {
+                    Ok(()) if self.optimal() => self.end(Status::Optimal, k),
+                    _ => self.end(Status::NoProgress, k),
+                };
+            }
+        }
+        self.end(Status::IterationLimit, self.options.iteration_limit)
+    }
+
+    /// The first point, its values and its derivatives.
+    fn start(&mut self, x0: &[f64]) -> Result<(), Undefined> {
+        self.view.enter(x0, &mut self.point.z);
+        self.view.evaluate(&mut self.point)?;
+        self.view.linearize(&mut self.gradient)?;
+        if self.options.scale_rows {
+            self.view.weigh_rows()?;
+            self.view.weigh(&mut self.point);
+        }
+        self.forget();
+        self.subproblem.gather(&self.view, &self.point, &self.mu)
+    }
+
+    /// Curvature before any is known: the unconstrained step has the length of `Options::initial_step`.
+    fn forget(&mut self) {
+        let size = norm(&self.gradient) / self.options.initial_step;
+        self.lagrangian_model.reset(if size > 0.0 { size } else { 1.0 });
+        // For the violation: a step of that length costs a tenth of what it could gain.
+        let step = self.options.initial_step;
+        self.violation_model.reset((0.1 * self.point.violation / (step * step)).max(1e-6));
+        self.pending = false;
+    }
+
+    /// ∇L and the optimality residuals at the iterate; the rows of the multipliers are there already.
+    fn measure(&mut self) -> Result<(), Undefined> {
+        self.y.fill(0.0);
+        if self.phase == Phase::Optimality {
+            self.y.copy_from_slice(&self.gradient);
+        }
+        self.subproblem.subtract_forces(&self.lambda, &self.mu, &mut self.y);
+        // `y` now is ∇L; `trial_gradient` is free between searches.
+        self.trial_gradient.copy_from_slice(&self.y);
+        kkt::project(&self.point.z, &self.lower, &self.upper, &mut self.trial_gradient, &mut self.nu);
+        self.kkt = kkt::residual(&self.view, &self.point, self.size(), &self.trial_gradient, &self.mu);
+        if self.y.iter().all(|y| y.is_finite()) { Ok(()) } else { Err(Undefined) }
+    }
+
+    /// What stationarity is measured against.
+    fn size(&self) -> f64 {
+        match self.phase {
+            Phase::Optimality => max_abs(&self.gradient).max(1.0),
+            Phase::Feasibility { .. } => self.subproblem.largest_force(&self.lambda, &self.mu).max(1.0),
+        }
+    }
+
+    pub(super) fn optimal(&self) -> bool {
+        self.phase == Phase::Optimality
+            && self.kkt.stationarity <= self.options.tolerance
+            && self.kkt.complementarity <= self.options.tolerance
+            && self.kkt.violation <= self.options.feasibility
+    }
+
+    /// Updates the quasi-Newton model of the phase with the step that led here; `measure` left ∇L in `y`.
+    fn learn(&mut self) {
+        if self.pending {
+            axpy(-1.0, &self.former, &mut self.y);
+            match self.phase {
+                Phase::Optimality => self.lagrangian_model.update(&self.s, &self.y),
+                Phase::Feasibility { .. } => self.violation_model.update(&self.s, &self.y),
+            }
+            self.pending = false;
+        }
+    }
+
+    /// Takes the multipliers of the subproblem and measures the iterate with them. Leaves ∇L in `former` for `learn`.
+    pub(super) fn adopt_multipliers(&mut self) {
+        self.lambda.copy_from_slice(&self.subproblem.lambda);
+        self.mu.copy_from_slice(&self.subproblem.mu);
+        self.former.fill(0.0);
+        if self.phase == Phase::Optimality {
+            self.former.copy_from_slice(&self.gradient);
+        }
+        self.subproblem.subtract_forces(&self.lambda, &self.mu, &mut self.former);
+        self.trial_gradient.copy_from_slice(&self.former);
+        kkt::project(&self.point.z, &self.lower, &self.upper, &mut self.trial_gradient, &mut self.nu);
+        self.kkt = kkt::residual(&self.view, &self.point, self.size(), &self.trial_gradient, &self.mu);
+        self.active = self.subproblem.active;
+    }
+
+    /// A second (and third) attempt at the same iterate. `false` when there is nothing left to try.
+    fn humble(&mut self, attempt: usize) -> bool {
+        match self.phase {
+            Phase::Optimality if attempt == 1 && !self.exact && !self.lagrangian_model.fresh => {
+                self.forget();
+                true
+            }
+            Phase::Optimality if self.kkt.violation > self.options.feasibility && attempt <= 2 => {
+                self.look_at_violation();
+                true
+            }
+            Phase::Feasibility { .. } if attempt <= 3 && !self.violation_model.fresh => {
+                self.forget();
+                true
+            }
+            _ => false,
+        }
+    }
+
+    pub(super) fn look_at_violation(&mut self) {
+        self.phase = Phase::Feasibility { from: self.point.violation };
+        self.pending = false;
+        let step = self.options.initial_step;
+        self.violation_model.reset((0.1 * self.point.violation / (step * step)).max(1e-6));
+    }
+
+    /// Moves to the accepted trial point, whose derivatives are ready.
+    fn advance(&mut self) {
+        for ((s, new), old) in self.s.iter_mut().zip(&self.trial.z).zip(&self.point.z) {
+            *s = new - old;
+        }
+        let still = self.s.iter().zip(&self.point.z).all(|(s, z)| s.abs() <= 1e-14 * (1.0 + z.abs()));
+        self.stalls = if still { self.stalls + 1 } else { 0 };
+        self.pending = true;
+        std::mem::swap(&mut self.point, &mut self.trial);
+        // `search` put the new gradient into `trial_gradient`.
+        std::mem::swap(&mut self.gradient, &mut self.trial_gradient);
+    }
+
+    fn report(&self, k: usize) -> Iteration {
+        Iteration {
+            k,
+            objective: self.point.values.objective,
+            violation: self.kkt.violation,
+            stationarity: self.kkt.stationarity,
+            step: self.alpha,
+            length: if k == 0 { 0.0 } else { max_abs(&self.s) },
+            penalty: self.merit.high,
+            active: self.active,
+            rows: self.subproblem.rows(),
+            kind: self.kind,
+        }
+    }
+
+    pub(super) fn took(&mut self, alpha: f64) {
+        self.alpha = alpha;
+    }
+
+    fn end(self, status: Status, iterations: usize) -> Solution {
+        let view = &self.view;
+        let n = view.n;
+        let mut x = vec![0.0; n];
+        view.leave(&self.point.z, &mut x);
+        let unweigh = |m: &[f64], w: &[f64]| m.iter().zip(w).map(|(m, w)| m * w).collect::<Vec<_>>();
+        let (equalities, inequalities) =
+            (unweigh(&self.lambda, &view.equality_weights), unweigh(&self.mu, &view.inequality_weights));
+        let bounds: Vec<f64> = self.nu.iter().zip(&view.scale).map(|(nu, s)| nu / s).collect();
+        let conflict = (status == Status::Infeasible).then(|| Conflict {
+            equalities: self.lambda.clone(),
+            inequalities: self.mu.clone(),
+            bounds: bounds.clone(),
+            stationarity: self.kkt.stationarity,
+        });
+        let values = view.raw_values(&self.point);
+        Solution {
+            x,
+            objective: values.objective,
+            values,
+            equality_multipliers: equalities,
+            inequality_multipliers: inequalities,
+            bound_multipliers: bounds,
+            status,
+            iterations,
+            evaluations: view.evaluations,
+            linearizations: view.linearizations,
+            interior_solves: self.subproblem.interior_solves,
+            kkt: self.kkt,
+            conflict,
+        }
+    }
+}

@@ -1,0 +1,457 @@
+//! The dual active-set method of Goldfarb & Idnani (Math. Prog. 27, 1983), with two extensions.
+//!
+//! *Capped multipliers.* A multiplier that reaches its limit wᵢ stays there and its constraint gives way, so the elastic
+//! program needs no slack variables and an inconsistent one no first phase: the dual is then a box-constrained ascent. The
+//! invariant at every step is Hd + g = Aᵀy + ν with all multipliers within their limits and the working set satisfied as
+//! equations; what is still wrong (a violated row, a satisfied row whose multiplier is at its limit) is repaired one
+//! constraint at a time, and each repair raises the dual objective.
+//!
+//! *Warm start.* The working set of the previous program is factorized first, rows that nearly depend on others left out,
+//! and constraints whose multipliers come out of range dropped until the point is dual feasible. From there the method runs
+//! as from scratch, so a bad guess costs time but never correctness. Rows added later are repaired from where it stands.
+
+use super::factor::Factor;
+use super::{Failure, Place, Quadratic, Step};
+use crate::sqp::dense::{axpy, dot, max_abs, multiply};
+
+/// Part of a normal that must be independent of the working set, relative to its length (in the metric of H⁻¹).
+const INDEPENDENT: f64 = 1e-9;
+/// The same for rows that are only a guess: neighbouring samples give nearly parallel rows, and one of them is enough.
+const INDEPENDENT_GUESS: f64 = 1e-5;
+/// Residual of the optimality conditions at which the answer stands.
+const ACCEPT: f64 = 1e-9;
+
+/// Workspace of the method.
+#[derive(Clone, Debug, Default)]
+pub struct ActiveSet {
+    n: usize,
+    factor: Factor,
+    /// Constraints of the working set, in the order of the factorization. Ids: 0..n lower bounds, n..2n upper, then rows.
+    working: Vec<usize>,
+    place: Vec<Place>,
+    /// Multipliers by id; bounds have nonnegative ones here.
+    y: Vec<f64>,
+    d: Vec<f64>,
+    w: Vec<f64>,
+    u: Vec<f64>,
+    change: Vec<f64>,
+    scratch: Vec<f64>,
+    result: Step,
+    /// Working-set changes since `solve`.
+    pub(crate) changes: usize,
+}
+
+impl ActiveSet {
+    /// A workspace for programs of `n` variables.
+    #[must_use]
+    pub fn new(n: usize) -> Self {
+        let zeros = || vec![0.0; n];
+        Self {
+            n,
+            factor: Factor::new(n),
+            working: Vec::with_capacity(n),
+            d: zeros(),
+            w: zeros(),
+            u: zeros(),
+            change: zeros(),
+            scratch: zeros(),
+            ..Self::default()
+        }
+    }
+
+    /// Solves `qp`, starting from its hints.
+    ///
+    /// # Errors
+    /// [`Failure`]; the caller then turns to [`interior`](super::interior).
+    pub fn solve(&mut self, qp: &Quadratic) -> Result<&Step, Failure> {
+        self.working.clear();
+        self.changes = 0;
+        if !self.factor.start(&qp.hessian) {
+            return Err(Failure::NotConvex);
+        }
+        self.place.clear();
+        self.place.resize(2 * self.n + qp.len(), Place::Off);
+        self.y.clear();
+        self.y.resize(2 * self.n + qp.len(), 0.0);
+        for id in 0..self.place.len() {
+            match qp.hints.get(id).copied().unwrap_or_default() {
+                Place::Working if self.exists(qp, id) => {
+                    self.project(qp, id);
+                    if self.independent(INDEPENDENT_GUESS) {
+                        self.enter(id);
+                    }
+                }
+                side @ (Place::Full | Place::Empty) if self.limit(qp, id).is_finite() => self.saturate(qp, id, side),
+                _ => {}
+            }
+        }
+        self.restart(qp)
+    }
+
+    /// Solves `qp` again after its gradient, constants or limits have changed, from the present working set.
+    ///
+    /// # Errors
+    /// As [`solve`](Self::solve).
+    pub fn restart(&mut self, qp: &Quadratic) -> Result<&Step, Failure> {
+        self.extend(qp);
+        for id in 0..self.place.len() {
+            let limit = self.limit(qp, id);
+            match self.place[id] {
+                side @ (Place::Full | Place::Empty) if limit.is_finite() => self.saturate(qp, id, side),
+                Place::Full | Place::Empty | Place::Off => {
+                    self.place[id] = Place::Off;
+                    self.y[id] = 0.0;
+                }
+                Place::Working => {}
+            }
+        }
+        self.make_dual_feasible(qp)?;
+        self.ascend(qp)?;
+        self.finish(qp)
+    }
+
+    /// Solves `qp` again after rows were added to it.
+    ///
+    /// # Errors
+    /// As [`solve`](Self::solve).
+    pub fn resume(&mut self, qp: &Quadratic) -> Result<&Step, Failure> {
+        self.extend(qp);
+        self.ascend(qp)?;
+        self.finish(qp)
+    }
+
+    /// The last solution.
+    #[must_use]
+    pub fn step(&self) -> &Step {
+        &self.result
+    }
+
+    pub(crate) fn places(&self) -> &[Place] {
+        &self.place
+    }
+
+    fn extend(&mut self, qp: &Quadratic) {
+        self.place.resize(2 * self.n + qp.len(), Place::Off);
+        self.y.resize(2 * self.n + qp.len(), 0.0);
+    }
+
+    // --- one constraint -----------------------------------------------------------------------------------------------
+
+    fn exists(&self, qp: &Quadratic, id: usize) -> bool {
+        let n = self.n;
+        if id < n {
+            qp.lower[id].is_finite()
+        } else if id < 2 * n {
+            qp.upper[id - n].is_finite()
+        } else {
+            true
+        }
+    }
+
+    fn limit(&self, qp: &Quadratic, id: usize) -> f64 {
+        if id < 2 * self.n { f64::INFINITY } else { qp.limits[id - 2 * self.n] }
+    }
+
+    fn equality(&self, qp: &Quadratic, id: usize) -> bool {
+        id >= 2 * self.n && qp.equality[id - 2 * self.n]
+    }
+
+    /// The constant b of aᵀd + b.
+    fn constant(&self, qp: &Quadratic, id: usize) -> f64 {
+        let n = self.n;
+        if id < n {
+            -qp.lower[id]
+        } else if id < 2 * n {
+            qp.upper[id - n]
+        } else {
+            qp.constants[id - 2 * n]
+        }
+    }
+
+    /// aᵀd + b.
+    fn value(&self, qp: &Quadratic, id: usize) -> f64 {
+        let n = self.n;
+        if id < n {
+            self.d[id] - qp.lower[id]
+        } else if id < 2 * n {
+            qp.upper[id - n] - self.d[id - n]
+        } else {
+            dot(qp.row(id - 2 * n), &self.d) + qp.constants[id - 2 * n]
+        }
+    }
+
+    /// w ← Jᵀa.
+    fn project(&mut self, qp: &Quadratic, id: usize) {
+        let n = self.n;
+        if id < n {
+            self.factor.project_unit(id, 1.0, &mut self.w);
+        } else if id < 2 * n {
+            self.factor.project_unit(id - n, -1.0, &mut self.w);
+        } else {
+            self.factor.project(qp.row(id - 2 * n), &mut self.w);
+        }
+    }
+
+    /// out ← out + α·a.
+    fn accumulate(n: usize, qp: &Quadratic, id: usize, alpha: f64, out: &mut [f64]) {
+        if id < n {
+            out[id] += alpha;
+        } else if id < 2 * n {
+            out[id - n] -= alpha;
+        } else {
+            axpy(alpha, qp.row(id - 2 * n), out);
+        }
+    }
+
+    fn independent(&self, threshold: f64) -> bool {
+        let q = self.factor.q;
+        let free = dot(&self.w[q..], &self.w[q..]);
+        free > threshold * threshold * dot(&self.w, &self.w)
+    }
+
+    fn enter(&mut self, id: usize) {
+        self.factor.add(&self.w);
+        self.working.push(id);
+        self.place[id] = Place::Working;
+    }
+
+    fn leave(&mut self, qp: &Quadratic, k: usize, place: Place) {
+        self.factor.remove(k);
+        let id = self.working.remove(k);
+        match place {
+            Place::Full | Place::Empty => self.saturate(qp, id, place),
+            Place::Off | Place::Working => {
+                self.place[id] = Place::Off;
+                self.y[id] = 0.0;
+            }
+        }
+        self.changes += 1;
+    }
+
+    fn saturate(&mut self, qp: &Quadratic, id: usize, side: Place) {
+        let limit = self.limit(qp, id);
+        self.place[id] = side;
+        self.y[id] = if side == Place::Empty { -limit } else { limit };
+    }
+
+    // --- the equality-constrained program of the working set ------------------------------------------------------------
+
+    /// Corrects d and the working multipliers so that Hd + g = Aᵀy and the working set holds as equations, given what
+    /// `scratch` holds of the former residual and the present values of the working set.
+    fn correct(&mut self, qp: &Quadratic) {
+        let q = self.factor.q;
+        // J-coordinates: u₁ from the constraints, u₂ from stationarity (see the module header of `factor`).
+        self.factor.project(&self.scratch, &mut self.w);
+        for k in 0..q {
+            self.change[k] = -self.value(qp, self.working[k]);
+        }
+        self.factor.solve_transposed(&self.change, &mut self.u);
+        for k in q..self.n {
+            self.u[k] = -self.w[k];
+        }
+        for k in 0..q {
+            self.w[k] += self.u[k];
+        }
+        self.factor.solve(&self.w, &mut self.change);
+        self.factor.expand(&self.u, &mut self.d);
+        for (k, &id) in self.working.iter().enumerate() {
+            self.y[id] += self.change[k];
+        }
+    }
+
+    /// scratch ← Hd + g − Aᵀy.
+    fn stationarity(&mut self, qp: &Quadratic) {
+        multiply(&qp.hessian, &self.d, &mut self.scratch);
+        axpy(1.0, &qp.gradient, &mut self.scratch);
+        for (id, &y) in self.y.iter().enumerate() {
+            if y != 0.0 {
+                Self::accumulate(self.n, qp, id, -y, &mut self.scratch);
+            }
+        }
+    }
+
+    /// Solves for the working set and drops constraints until every multiplier is within its limits.
+    fn make_dual_feasible(&mut self, qp: &Quadratic) -> Result<(), Failure> {
+        loop {
+            self.d.fill(0.0);
+            for &id in &self.working {
+                self.y[id] = 0.0;
+            }
+            self.stationarity(qp);
+            self.correct(qp);
+            let mut worst = (0.0, 0, Place::Off);
+            for (k, &id) in self.working.iter().enumerate() {
+                let (y, limit) = (self.y[id], self.limit(qp, id));
+                let (excess, place) = if y > limit {
+                    (y - limit, Place::Full)
+                } else if self.equality(qp, id) {
+                    (-limit - y, Place::Empty)
+                } else {
+                    (-y, Place::Off)
+                };
+                if !excess.is_finite() && excess != f64::NEG_INFINITY {
+                    return Err(Failure::Inaccurate);
+                }
+                if excess > worst.0 {
+                    worst = (excess, k, place);
+                }
+            }
+            if worst.0 == 0.0 {
+                return Ok(());
+            }
+            self.leave(qp, worst.1, worst.2);
+        }
+    }
+
+    // --- the dual ascent ------------------------------------------------------------------------------------------------
+
+    /// The constraint that contradicts optimality most, and the direction in which its multiplier has to go. Equalities come
+    /// first: they are in every working set sooner or later.
+    fn pick(&self, qp: &Quadratic) -> Option<(usize, f64)> {
+        let n = self.n;
+        let mut worst = (0.0, None);
+        let reach = 1e-13 * (1.0 + max_abs(&self.d));
+        for id in 0..self.place.len() {
+            if !self.exists(qp, id) || self.place[id] == Place::Working {
+                continue;
+            }
+            let value = self.value(qp, id);
+            let tolerance = reach + 1e-13 * self.constant(qp, id).abs();
+            let (violation, sign) = match self.place[id] {
+                Place::Off if self.equality(qp, id) => (value.abs(), -value.signum()),
+                Place::Off => (-value, 1.0),
+                Place::Full => (value, -1.0),
+                Place::Empty => (-value, 1.0),
+                Place::Working => (0.0, 1.0),
+            };
+            if violation > tolerance {
+                if self.place[id] == Place::Off && id >= 2 * n && qp.equality[id - 2 * n] {
+                    return Some((id, sign));
+                }
+                if violation > worst.0 {
+                    worst = (violation, Some((id, sign)));
+                }
+            }
+        }
+        worst.1
+    }
+
+    fn ascend(&mut self, qp: &Quadratic) -> Result<(), Failure> {
+        let limit = 50 + 10 * (self.n + qp.len());
+        let mut count = 0;
+        while let Some((p, sign)) = self.pick(qp) {
+            // Raise (or lower) the multiplier of p until p holds, is dropped, or its limit is reached.
+            loop {
+                count += 1;
+                if count > limit {
+                    return Err(Failure::Inaccurate);
+                }
+                if self.advance(qp, p, sign)? {
+                    break;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// One step of the dual ascent along the multiplier of `p`. `true` when `p` is settled.
+    fn advance(&mut self, qp: &Quadratic, p: usize, sign: f64) -> Result<bool, Failure> {
+        let q = self.factor.q;
+        self.project(qp, p);
+        let independent = q < self.n && self.independent(INDEPENDENT);
+        if sign < 0.0 {
+            self.w.iter_mut().for_each(|w| *w = -*w);
+        }
+        self.factor.solve(&self.w, &mut self.change);
+
+        // t₂: p holds as an equation. t₁: a working multiplier reaches one of its limits. t₃: that of p does.
+        let full = if independent {
+            (-sign * self.value(qp, p)).max(0.0) / dot(&self.w[q..], &self.w[q..])
+        } else {
+            f64::INFINITY
+        };
+        let mut partial = (f64::INFINITY, 0, Place::Off);
+        for (k, &id) in self.working.iter().enumerate() {
+            let (rate, y, limit) = (self.change[k], self.y[id], self.limit(qp, id));
+            let (room, place) = if rate > 0.0 {
+                if self.equality(qp, id) { (limit + y, Place::Empty) } else { (y, Place::Off) }
+            } else if rate < 0.0 {
+                (limit - y, Place::Full)
+            } else {
+                continue;
+            };
+            let t = room.max(0.0) / rate.abs();
+            if t < partial.0 {
+                partial = (t, k, place);
+            }
+        }
+        let own_limit = self.limit(qp, p);
+        let (own, own_place) = if sign > 0.0 {
+            (own_limit - self.y[p], Place::Full)
+        } else if self.equality(qp, p) {
+            (self.y[p] + own_limit, Place::Empty)
+        } else {
+            (self.y[p], Place::Off)
+        };
+
+        let t = full.min(partial.0).min(own);
+        if !t.is_finite() {
+            return Err(if t.is_nan() { Failure::Inaccurate } else { Failure::Inconsistent });
+        }
+        if independent {
+            self.factor.descend(t, &self.w, &mut self.d);
+        }
+        for (k, &id) in self.working.iter().enumerate() {
+            self.y[id] -= t * self.change[k];
+        }
+        self.y[p] += sign * t;
+
+        if full <= partial.0 && full <= own {
+            if sign < 0.0 {
+                self.w.iter_mut().for_each(|w| *w = -*w);
+            }
+            self.enter(p);
+            self.changes += 1;
+            Ok(true)
+        } else if partial.0 <= own {
+            self.leave(qp, partial.1, partial.2);
+            Ok(false)
+        } else {
+            match own_place {
+                Place::Full | Place::Empty => self.saturate(qp, p, own_place),
+                Place::Off | Place::Working => {
+                    self.place[p] = Place::Off;
+                    self.y[p] = 0.0;
+                }
+            }
+            self.changes += 1;
+            Ok(true)
+        }
+    }
+
+    /// Refines the answer on its working set and checks it against the optimality conditions.
+    fn finish(&mut self, qp: &Quadratic) -> Result<&Step, Failure> {
+        let n = self.n;
+        for attempt in 0..3 {
+            if attempt > 0 {
+                self.stationarity(qp);
+                self.correct(qp);
+            }
+            let result = &mut self.result;
+            result.d.clear();
+            result.d.extend(self.d.iter().zip(&qp.lower).zip(&qp.upper).map(|((d, low), high)| d.max(*low).min(*high)));
+            result.multipliers.clear();
+            result.multipliers.extend((0..qp.len()).map(|i| {
+                let (low, high) = qp.range(i);
+                self.y[2 * n + i].max(low).min(high)
+            }));
+            result.bound_multipliers.clear();
+            result.bound_multipliers.extend((0..n).map(|j| self.y[j].max(0.0) - self.y[n + j].max(0.0)));
+            let residual = qp.residual(&self.result, &mut self.scratch);
+            if residual <= ACCEPT * 1e-3 || (attempt == 2 && residual <= ACCEPT) {
+                return Ok(&self.result);
+            }
+        }
+        Err(Failure::Inaccurate)
+    }
+}

@@ -1,0 +1,329 @@
+//! The quadratic subproblem of an iterate, with only the rows that matter.
+//!
+//! Of thousands of sampled inequalities a few are active. The subproblem starts with the equalities, last time's active rows
+//! and what is violated or as near to it as last time's step was long. Its solution d is then put to *all* linearized
+//! constraints at once (J_I·d is one call); rows it violates are added and the dual method goes on from where it stands. When
+//! none is left, d solves the full subproblem: screening costs rounds, never exactness.
+
+use super::dense::dot;
+use super::options::Subproblems;
+use super::problem::Undefined;
+use super::qp::active_set::ActiveSet;
+use super::qp::{Failure, Place, Quadratic, Step, interior};
+use super::scaled::{Point, Scaled};
+use super::Problem;
+
+/// Up to this many inequalities, screening is not worth its rounds.
+const FEW: usize = 48;
+/// Rounds in which only the worst of each run of neighbouring violated rows is added; after that, all of them.
+const GENTLE_ROUNDS: usize = 4;
+const NONE: usize = usize::MAX;
+
+/// Why there is no step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Trouble {
+    Undefined,
+    Unsolved(Failure),
+}
+
+impl From<Undefined> for Trouble {
+    fn from(_: Undefined) -> Self {
+        Self::Undefined
+    }
+}
+
+pub(super) struct Subproblem {
+    pub(super) qp: Quadratic,
+    solver: ActiveSet,
+    method: Subproblems,
+    /// Inequality of each row of `qp` after the equalities.
+    ids: Vec<usize>,
+    /// Row of `qp` of each inequality, or `NONE`.
+    row_of: Vec<usize>,
+    /// Where bounds, equalities and inequalities stood in the last solution.
+    bound_places: Vec<Place>,
+    equality_places: Vec<Place>,
+    inequality_places: Vec<Place>,
+    /// |J_I·d| of the last step: how far each constraint tends to move.
+    reach: Vec<f64>,
+    equality_constants: Vec<f64>,
+    inequality_constants: Vec<f64>,
+    limit: f64,
+    row: Vec<f64>,
+    scratch: Vec<f64>,
+
+    // The solution.
+    pub(super) step: Step,
+    pub(super) lambda: Vec<f64>,
+    pub(super) mu: Vec<f64>,
+    /// J_E·d and J_I·d.
+    pub(super) equality_directions: Vec<f64>,
+    pub(super) inequality_directions: Vec<f64>,
+    /// Σ of the violations of the linearized constraints at d.
+    pub(super) linear_violation: f64,
+    /// Some constraint gave way: its multiplier is at the limit.
+    pub(super) yielding: bool,
+    /// Number of active constraints and bounds.
+    pub(super) active: usize,
+    pub(super) interior_solves: usize,
+}
+
+/// How the active-set method starts.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Start {
+    Hints,
+    Restart,
+    Resume,
+}
+
+impl Subproblem {
+    pub(super) fn new(n: usize, equalities: usize, inequalities: usize, method: Subproblems) -> Self {
+        Self {
+            qp: Quadratic::new(n, equalities + inequalities.min(4 * FEW)),
+            solver: ActiveSet::new(n),
+            method,
+            ids: Vec::with_capacity(inequalities.min(4 * FEW)),
+            row_of: vec![NONE; inequalities],
+            bound_places: vec![Place::Off; 2 * n],
+            equality_places: vec![Place::Working; equalities],
+            inequality_places: vec![Place::Off; inequalities],
+            reach: vec![0.0; inequalities],
+            equality_constants: vec![0.0; equalities],
+            inequality_constants: vec![0.0; inequalities],
+            limit: f64::INFINITY,
+            row: vec![0.0; n],
+            scratch: vec![0.0; n],
+            step: Step::default(),
+            lambda: vec![0.0; equalities],
+            mu: vec![0.0; inequalities],
+            equality_directions: vec![0.0; equalities],
+            inequality_directions: vec![0.0; inequalities],
+            linear_violation: 0.0,
+            yielding: false,
+            active: 0,
+            interior_solves: 0,
+        }
+    }
+
+    /// Number of inequality rows in use.
+    pub(super) fn rows(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// Linearizes at `point`: the rows to start with, and those with a multiplier in `mu`.
+    pub(super) fn gather<P: Problem>(&mut self, view: &Scaled<P>, point: &Point, mu: &[f64]) -> Result<(), Undefined> {
+        for &i in &self.ids {
+            self.row_of[i] = NONE;
+        }
+        self.ids.clear();
+        self.qp.clear();
+        self.equality_constants.copy_from_slice(&point.values.equalities);
+        self.inequality_constants.copy_from_slice(&point.values.inequalities);
+        let bounds = self.bound_places.len();
+        self.qp.hints[..bounds].copy_from_slice(&self.bound_places);
+        for i in 0..view.equalities {
+            view.equality_row(i, &mut self.row)?;
+            self.qp.push(&self.row, self.equality_constants[i], true, f64::INFINITY);
+            self.qp.hints[bounds + i] = self.equality_places[i];
+        }
+        let c = &point.values.inequalities;
+        let few = c.len() <= FEW;
+        for i in 0..c.len() {
+            let near = || {
+                // A run of neighbouring samples is represented by its lowest member.
+                (c[i] < 0.0 || c[i] < 0.5 * self.reach[i])
+                    && (i == 0 || c[i] <= c[i - 1])
+                    && (i + 1 == c.len() || c[i] <= c[i + 1])
+            };
+            if few || self.inequality_places[i] != Place::Off || mu[i] != 0.0 || near() {
+                self.add(view, i)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn add<P: Problem>(&mut self, view: &Scaled<P>, i: usize) -> Result<(), Undefined> {
+        view.inequality_row(i, &mut self.row)?;
+        self.row_of[i] = view.equalities + self.ids.len();
+        self.ids.push(i);
+        self.qp.push(&self.row, self.inequality_constants[i], false, self.limit);
+        if let Some(hint) = self.qp.hints.last_mut() {
+            *hint = self.inequality_places[i];
+        }
+        Ok(())
+    }
+
+    /// out ← out − J_Eᵀλ − J_Iᵀμ; every inequality with a multiplier must have a row.
+    pub(super) fn subtract_forces(&self, lambda: &[f64], mu: &[f64], out: &mut [f64]) {
+        for (i, lambda) in lambda.iter().enumerate() {
+            super::dense::axpy(-lambda * self.qp.norms[i], self.qp.row(i), out);
+        }
+        for (k, &i) in self.ids.iter().enumerate() {
+            if mu[i] != 0.0 {
+                let row = lambda.len() + k;
+                super::dense::axpy(-mu[i] * self.qp.norms[row], self.qp.row(row), out);
+            }
+        }
+    }
+
+    /// The largest ‖λᵢ·aᵢ‖₂ of all constraints.
+    pub(super) fn largest_force(&self, lambda: &[f64], mu: &[f64]) -> f64 {
+        let equalities = lambda.iter().zip(&self.qp.norms).map(|(m, norm)| m.abs() * norm);
+        let rows = self.ids.iter().zip(self.qp.norms.iter().skip(lambda.len())).map(|(&i, norm)| mu[i] * norm);
+        equalities.chain(rows).fold(0.0, f64::max)
+    }
+
+    /// Caps all multipliers of the constraints as they are: the price of violating them.
+    pub(super) fn cap(&mut self, limit: f64) {
+        self.limit = limit;
+        for (own, norm) in self.qp.limits.iter_mut().zip(&self.qp.norms) {
+            *own = limit * norm;
+        }
+    }
+
+    /// Solves with the Hessian, the gradient and the bounds that the caller put into `qp`.
+    pub(super) fn solve<P: Problem>(&mut self, view: &Scaled<P>, point: &Point) -> Result<(), Trouble> {
+        self.equality_constants.copy_from_slice(&point.values.equalities);
+        self.inequality_constants.copy_from_slice(&point.values.inequalities);
+        self.set_row_constants();
+        self.screen(view, Start::Hints)
+    }
+
+    /// Solves again after [`cap`](Self::cap).
+    pub(super) fn solve_again<P: Problem>(&mut self, view: &Scaled<P>) -> Result<(), Trouble> {
+        self.screen(view, Start::Restart)
+    }
+
+    /// Solves again with the constraints' values replaced by c(z + d) − J·d, which makes up for their curvature along d: the
+    /// second-order correction in the form of Nocedal & Wright eq. 18.35-36, over all constraints rather than the active ones.
+    pub(super) fn correct<P: Problem>(&mut self, view: &Scaled<P>, trial: &Point) -> Result<(), Trouble> {
+        for (i, constant) in self.equality_constants.iter_mut().enumerate() {
+            *constant = trial.values.equalities[i] - self.equality_directions[i];
+        }
+        for (i, constant) in self.inequality_constants.iter_mut().enumerate() {
+            *constant = trial.values.inequalities[i] - self.inequality_directions[i];
+        }
+        self.set_row_constants();
+        self.screen(view, Start::Restart)
+    }
+
+    fn set_row_constants(&mut self) {
+        let equalities = self.equality_constants.len();
+        for row in 0..self.qp.len() {
+            let constant =
+                if row < equalities { self.equality_constants[row] } else { self.inequality_constants[self.ids[row - equalities]] };
+            self.qp.constants[row] = constant / self.qp.norms[row];
+        }
+    }
+
+    fn screen<P: Problem>(&mut self, view: &Scaled<P>, start: Start) -> Result<(), Trouble> {
+        let mut start = start;
+        for round in 0.. {
+            start = self.solve_rows(start)?;
+            view.directions(&self.step.d, &mut self.scratch, &mut self.inequality_directions)?;
+            if !self.add_violated(view, round)? {
+                break;
+            }
+        }
+        self.collect();
+        Ok(())
+    }
+
+    /// Solves with the present rows; returns how to go on when there are more.
+    fn solve_rows(&mut self, start: Start) -> Result<Start, Trouble> {
+        if self.method == Subproblems::ActiveSet {
+            let outcome = match start {
+                Start::Hints => self.solver.solve(&self.qp),
+                Start::Restart => self.solver.restart(&self.qp),
+                Start::Resume => self.solver.resume(&self.qp),
+            };
+            match outcome {
+                Ok(step) => {
+                    self.step.clone_from(step);
+                    self.qp.hints.copy_from_slice(self.solver.places());
+                    return Ok(Start::Resume);
+                }
+                Err(Failure::NotConvex) => return Err(Trouble::Unsolved(Failure::NotConvex)),
+                Err(_) => {}
+            }
+        }
+        self.interior_solves += 1;
+        self.step = interior::solve(&self.qp).map_err(Trouble::Unsolved)?;
+        self.read_places();
+        Ok(Start::Hints)
+    }
+
+    /// The active set of an interior-point solution, and an exact zero for the multipliers outside it.
+    fn read_places(&mut self) {
+        let n = self.qp.n;
+        let size = 1e-7 * self.step.multipliers.iter().chain(&self.step.bound_multipliers).fold(1e-12, |m: f64, y| m.max(y.abs()));
+        for (j, nu) in self.step.bound_multipliers.iter_mut().enumerate() {
+            if nu.abs() <= size {
+                *nu = 0.0;
+            }
+            let place = |active| if active { Place::Working } else { Place::Off };
+            self.qp.hints[j] = place(*nu > 0.0);
+            self.qp.hints[n + j] = place(*nu < 0.0);
+        }
+        for (i, y) in self.step.multipliers.iter_mut().enumerate() {
+            if y.abs() <= size {
+                *y = 0.0;
+            }
+            self.qp.hints[2 * n + i] = if *y >= self.qp.limits[i] {
+                Place::Full
+            } else if self.qp.equality[i] && *y <= -self.qp.limits[i] {
+                Place::Empty
+            } else if self.qp.equality[i] || *y > 0.0 {
+                Place::Working
+            } else {
+                Place::Off
+            };
+        }
+    }
+
+    fn add_violated<P: Problem>(&mut self, view: &Scaled<P>, round: usize) -> Result<bool, Undefined> {
+        let before = self.ids.len();
+        let count = self.row_of.len();
+        let linear = |this: &Self, i: usize| this.inequality_constants[i] + this.inequality_directions[i];
+        for i in 0..count {
+            if self.row_of[i] != NONE {
+                continue;
+            }
+            let value = linear(self, i);
+            if value >= -1e-11 - 1e-10 * self.inequality_constants[i].abs() {
+                continue;
+            }
+            let lowest = |j: usize| self.row_of[j] != NONE || value <= linear(self, j);
+            if round >= GENTLE_ROUNDS || ((i == 0 || lowest(i - 1)) && (i + 1 == count || lowest(i + 1))) {
+                self.add(view, i)?;
+            }
+        }
+        Ok(self.ids.len() > before)
+    }
+
+    fn collect(&mut self) {
+        let (n, equalities) = (self.qp.n, self.lambda.len());
+        self.mu.fill(0.0);
+        self.inequality_places.fill(Place::Off);
+        self.bound_places.copy_from_slice(&self.qp.hints[..2 * n]);
+        let places = &self.qp.hints[2 * n..];
+        self.active = self.qp.hints.iter().filter(|place| **place != Place::Off).count();
+        self.yielding = places.iter().any(|place| matches!(place, Place::Full | Place::Empty));
+        self.linear_violation = 0.0;
+        for i in 0..equalities {
+            self.lambda[i] = self.qp.multiplier(&self.step, i);
+            self.equality_places[i] = places[i];
+            self.equality_directions[i] = self.qp.norms[i] * dot(self.qp.row(i), &self.step.d);
+            self.linear_violation += (self.equality_constants[i] + self.equality_directions[i]).abs();
+        }
+        for (k, &i) in self.ids.iter().enumerate() {
+            self.mu[i] = self.qp.multiplier(&self.step, equalities + k);
+            self.inequality_places[i] = places[equalities + k];
+        }
+        for i in 0..self.reach.len() {
+            let direction = self.inequality_directions[i];
+            self.reach[i] = direction.abs();
+            self.linear_violation += (-(self.inequality_constants[i] + direction)).max(0.0);
+        }
+    }
+}
