@@ -3,6 +3,7 @@
 #![forbid(unsafe_code)]
 
 pub mod model;
+pub mod states;
 
 /// Generated dynamics: one module per gait of `model-spec`.
 pub mod gaits {

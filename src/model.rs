@@ -154,6 +154,11 @@ impl Description {
         (0..self.joints.len()).filter(|j| *j != self.unactuated)
     }
 
+    /// Whether the joint connects a leg to the platform.
+    pub fn hangs_on_platform(&self, joint: usize) -> bool {
+        self.bodies.iter().any(|b| b.parent == Some(0) && b.coordinate == Some(joint))
+    }
+
     /// Where the coordinate `k` of q comes from when the legs swap roles: index and sign.
     pub fn swapped(&self, k: usize) -> (usize, f64) {
         let [a, b] = &self.legs;
@@ -177,6 +182,8 @@ pub trait Gait: Sync {
     fn inertia_and_bias(&self, q: &[f64], qd: &[f64], out: &mut [f64]);
     /// Kinetic, potential energy.
     fn energy(&self, x: &[f64], xd: &[f64], out: &mut [f64]);
+    /// Mass centre of the robot, its velocity.
+    fn centre_of_mass(&self, x: &[f64], xd: &[f64], out: &mut [f64]);
     /// Foot position d.
     fn foot(&self, leg: usize, x: &[f64], out: &mut [f64]);
     /// D: n × nc.

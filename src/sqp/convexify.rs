@@ -3,7 +3,9 @@
 //! Only the curvature along the active constraints matters. By Finsler's lemma W + γAᵀA is positive definite for large γ
 //! exactly if W is so on the null space of the active normals A; and because (γ/2)‖Ad + b‖² vanishes on Ad + b = 0, adding it
 //! to the subproblem (with its linear part γAᵀb) changes neither step nor multipliers as long as these constraints stay active.
-//! Only if that fails too is the diagonal shifted, W + γAᵀA + δI, and δ then remembered (as in Ipopt, Wächter & Biegler 2006).
+//! Only if that fails too is W shifted: not by a multiple of I, which knows nothing of the variables' scales, but by one of the
+//! positive definite quasi-Newton matrix B that is kept alongside, W + τB. The shift is remembered, as in Ipopt (Wächter &
+//! Biegler 2006), so that a run of indefinite Hessians costs few factorizations.
 
 use super::dense::{axpy, cholesky, max_abs, rank_one};
 use super::qp::{Place, Quadratic};
@@ -21,9 +23,9 @@ impl Convexifier {
         Self { l: vec![0.0; n * n], augmented: vec![0.0; n * n], active: Vec::new(), shift: 0.0 }
     }
 
-    /// Writes the stand-in for `w` and its linear part into `qp` (whose gradient must be ∇f), and adds the shift to `w`
-    /// itself, so that `w` remains the curvature of the model. The rows to count on are those that `qp` hints at.
-    pub(super) fn convexify(&mut self, w: &mut [f64], qp: &mut Quadratic, augment: bool) {
+    /// Writes the stand-in for `w` and its linear part into `qp` (whose gradient must be ∇f), and adds the shift by `model` to
+    /// `w` itself, so that `w` remains the curvature of the model. The rows to count on are those that `qp` hints at.
+    pub(super) fn convexify(&mut self, w: &mut [f64], qp: &mut Quadratic, model: &[f64], augment: bool) {
         let n = qp.n;
         self.active.clear();
         self.active.extend((0..qp.len()).filter(|i| augment && qp.hints[2 * n + i] == Place::Working));
@@ -50,27 +52,28 @@ impl Convexifier {
             }
         }
         let augmented = std::mem::take(&mut self.augmented);
-        let mut delta = 0.0;
-        if !self.definite(&augmented, n, floor) {
-            // γ as large as this would only make the shifted matrix ill-conditioned: W + δI alone.
-            gamma = 0.0;
-            delta = if self.shift > 0.0 { self.shift / 3.0 } else { 1e-3 * size };
-            while !self.definite_shifted(w, n, delta, floor) && delta < 1e3 * size {
-                delta *= 3.0;
-            }
-            self.shift = delta;
-            w.iter_mut().step_by(n + 1).for_each(|w| *w += delta);
-        }
+        let definite = self.definite(&augmented, n, floor);
         self.augmented = augmented;
-        if delta > 0.0 {
-            qp.hessian.copy_from_slice(w);
-        } else {
+        if definite {
             qp.hessian.copy_from_slice(&self.augmented);
             for &i in &self.active {
                 let b = qp.constants[i];
                 axpy(gamma * b, &qp.rows[i * n..(i + 1) * n], &mut qp.gradient);
             }
+            return;
         }
+        // γ as large as this would only make the matrix ill-conditioned: W + τB alone.
+        let mut tau = if self.shift > 0.0 { 0.1 * self.shift } else { 1e-2 };
+        while tau < 1e4 && !self.definite_shifted(w, n, tau, model, floor) {
+            tau *= 4.0;
+        }
+        self.shift = tau.min(1e2);
+        if tau >= 1e4 {
+            w.fill(0.0);
+            tau = 1.0;
+        }
+        axpy(tau, model, w);
+        qp.hessian.copy_from_slice(w);
     }
 
     fn definite(&mut self, a: &[f64], n: usize, floor: f64) -> bool {
@@ -78,10 +81,9 @@ impl Convexifier {
         cholesky(a, n, &mut self.l) && (0..n).all(|i| self.l[i * n + i] * self.l[i * n + i] > floor)
     }
 
-    fn definite_shifted(&mut self, a: &[f64], n: usize, delta: f64, floor: f64) -> bool {
-        self.augmented.resize(n * n, 0.0);
-        self.augmented.copy_from_slice(a);
-        self.augmented.iter_mut().step_by(n + 1).for_each(|a| *a += delta);
+    fn definite_shifted(&mut self, w: &[f64], n: usize, tau: f64, model: &[f64], floor: f64) -> bool {
+        self.augmented.copy_from_slice(w);
+        axpy(tau, model, &mut self.augmented);
         let shifted = std::mem::take(&mut self.augmented);
         let definite = self.definite(&shifted, n, floor);
         self.augmented = shifted;

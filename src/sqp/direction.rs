@@ -47,7 +47,7 @@ impl<P: Problem> Run<'_, '_, P> {
         self.plain_step(true)?;
         if !self.subproblem.yielding {
             let direction = self.conclude(Kind::Exact);
-            if !self.exact || direction != Direction::None {
+            if !self.exact || self.distrust || direction != Direction::None {
                 return Ok(direction);
             }
             // The convexification counted on constraints that turned out inactive.
@@ -74,25 +74,27 @@ impl<P: Problem> Run<'_, '_, P> {
             if !self.subproblem.yielding || relief >= FAIR * (violation - best) || penalty >= prohibitive {
                 break;
             }
-            penalty *= 10.0;
+            penalty = (10.0 * penalty).min(prohibitive);
         }
         self.merit.raise(penalty);
         Ok(self.conclude(Kind::Elastic))
     }
 
     fn prohibitive(&self) -> f64 {
-        PROHIBITIVE * max_abs(&self.gradient).max(1.0).max(1e-3 * self.merit.high)
+        PROHIBITIVE * max_abs(&self.gradient).max(1.0)
     }
 
     /// Solves the subproblem of the optimality phase with prohibitive prices.
     fn plain_step(&mut self, augment: bool) -> Result<(), Trouble> {
         self.set_bounds();
         self.subproblem.qp.gradient.copy_from_slice(&self.gradient);
-        if self.exact && self.phase == Phase::Optimality {
+        let newton = self.exact && !self.distrust && self.phase == Phase::Optimality;
+        if newton {
             self.exact = self.view.hessian(&self.lambda, &self.mu, &mut self.curvature);
         }
-        if self.exact && self.phase == Phase::Optimality {
-            self.convexifier.convexify(&mut self.curvature, &mut self.subproblem.qp, augment);
+        if newton && self.exact {
+            let (model, qp) = (&self.lagrangian_model.b, &mut self.subproblem.qp);
+            self.convexifier.convexify(&mut self.curvature, qp, model, augment);
         } else {
             self.curvature.copy_from_slice(&self.lagrangian_model.b);
             self.subproblem.qp.hessian.copy_from_slice(&self.curvature);
@@ -136,6 +138,9 @@ impl<P: Problem> Run<'_, '_, P> {
         if optimality {
             if self.optimal() {
                 return Direction::Stationary;
+            }
+            if kind == Kind::Exact {
+                self.merit.relax(max_abs(&self.lambda).max(max_abs(&self.mu)));
             }
             self.merit.prepare(&self.promise);
             let descends = self.promise.reduction(self.merit.high) > 0.0;

@@ -94,7 +94,7 @@ impl<P: Problem> Run<'_, '_, P> {
     fn phase_merit(&self) -> Merit {
         match self.phase {
             Phase::Optimality => self.merit.clone(),
-            Phase::Feasibility { .. } => Merit { low: 1.0, high: 1.0 },
+            Phase::Feasibility { .. } => Merit::of_violation(),
         }
     }
 

@@ -7,11 +7,15 @@
 const SUFFICIENT: f64 = 1e-4;
 /// Share of the linearized violation's decrease that the model of φ must show.
 const SHARE: f64 = 0.1;
+/// How often the penalty may come down. A finite number, so that one merit function governs in the end.
+const LOWERINGS: usize = 10;
 
 #[derive(Clone, Debug)]
 pub(super) struct Merit {
     pub(super) low: f64,
     pub(super) high: f64,
+    /// How many more times the penalty may be lowered.
+    lowerings: usize,
 }
 
 /// What the subproblem promises for its full step.
@@ -35,7 +39,7 @@ impl Promise {
 impl Merit {
     pub(super) fn new(penalty: f64) -> Self {
         let high = if penalty.is_finite() && penalty > 0.0 { penalty } else { 1.0 };
-        Self { low: 1e-3 * high, high }
+        Self { low: 1e-3 * high, high, lowerings: LOWERINGS }
     }
 
     /// Raises the penalty until the promised reduction of φ is at least a share of ρ times the promised relief
@@ -46,6 +50,22 @@ impl Merit {
             if needed.is_finite() && needed > self.high {
                 self.high = 1.5 * needed;
             }
+        }
+    }
+
+    /// The merit function of the violation alone.
+    pub(super) fn of_violation() -> Self {
+        Self { low: 1.0, high: 1.0, lowerings: 0 }
+    }
+
+    /// Lowers a penalty that a bad spell has driven far beyond the largest multiplier: it would tie the iterates to every
+    /// bend of the constraints.
+    pub(super) fn relax(&mut self, largest_multiplier: f64) {
+        let enough = (10.0 * largest_multiplier).max(1.0);
+        if self.lowerings > 0 && self.high > 10.0 * enough {
+            self.high = enough;
+            self.low = self.low.min(enough);
+            self.lowerings -= 1;
         }
     }
 
@@ -94,7 +114,7 @@ mod tests {
 
     #[test]
     fn either_end_of_the_interval_may_accept() {
-        let mut merit = Merit { low: 0.01, high: 10.0 };
+        let mut merit = Merit { low: 0.01, high: 10.0, lowerings: 0 };
         // Less f for more v: good for the low end only.
         let promise = Promise { slope: -1.0, curvature: 0.5, relief: 0.1 };
         assert!(merit.accepts(&promise, 1.0, (0.0, 0.1), (-0.7, 0.3)));

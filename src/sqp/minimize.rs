@@ -88,9 +88,10 @@ pub(super) struct Run<'a, 'p, P: Problem> {
     pub(super) lagrangian_model: QuasiNewton,
     pub(super) violation_model: QuasiNewton,
     pub(super) exact: bool,
+    /// At this iterate the exact Hessian has led nowhere.
+    pub(super) distrust: bool,
     pub(super) convexifier: Convexifier,
     pub(super) curvature: Vec<f64>,
-    pub(super) second: Vec<f64>,
 
     /// ∇L at the former iterate with the present multipliers; pending until ∇L is known at the new one.
     former: Vec<f64>,
@@ -128,9 +129,9 @@ impl<'a, 'p, P: Problem> Run<'a, 'p, P> {
             lagrangian_model: QuasiNewton::new(n),
             violation_model: QuasiNewton::new(n),
             exact: options.exact_hessian,
+            distrust: false,
             convexifier: Convexifier::new(n),
             curvature: vec![0.0; n * n],
-            second: vec![0.0; n * n],
             former: zeros(),
             s: zeros(),
             y: zeros(),
@@ -161,6 +162,7 @@ impl<'a, 'p, P: Problem> Run<'a, 'p, P> {
             // A direction that leads nowhere is replaced by a humbler one: first without the model's memory, then without
             // the objective.
             let mut humility = 0;
+            self.distrust = false;
             loop {
                 let direction = match self.direction() {
                     Ok(direction) => direction,
@@ -190,7 +192,8 @@ impl<'a, 'p, P: Problem> Run<'a, 'p, P> {
                 };
             }
         }
-        self.end(Status::IterationLimit, self.options.iteration_limit)
+        let limit = self.options.iteration_limit;
+        self.end(Status::IterationLimit, limit)
     }
 
     /// The first point, its values and its derivatives.
@@ -275,15 +278,19 @@ impl<'a, 'p, P: Problem> Run<'a, 'p, P> {
     /// A second (and third) attempt at the same iterate. `false` when there is nothing left to try.
     fn humble(&mut self, attempt: usize) -> bool {
         match self.phase {
-            Phase::Optimality if attempt == 1 && !self.exact && !self.lagrangian_model.fresh => {
+            Phase::Optimality if self.exact && !self.distrust => {
+                self.distrust = true;
+                true
+            }
+            Phase::Optimality if attempt <= 2 && !self.lagrangian_model.fresh => {
                 self.forget();
                 true
             }
-            Phase::Optimality if self.kkt.violation > self.options.feasibility && attempt <= 2 => {
+            Phase::Optimality if attempt <= 3 && self.kkt.violation > self.options.feasibility => {
                 self.look_at_violation();
                 true
             }
-            Phase::Feasibility { .. } if attempt <= 3 && !self.violation_model.fresh => {
+            Phase::Feasibility { .. } if attempt <= 4 && !self.violation_model.fresh => {
                 self.forget();
                 true
             }

@@ -35,6 +35,15 @@ pub fn kernels(model: &mut Model) -> Vec<Kernel> {
             .vector("h", bias, "H"),
         energy(model).input("x", x.clone()).input("xd", xd.clone()),
     ];
+    let com = model.centre_of_mass(Origin::World);
+    let com_rate = model.rate(&com);
+    kernels.push(
+        Kernel::new("centre_of_mass", "Mass centre of the whole robot and its velocity, world axes, m and m/s.")
+            .input("x", x.clone())
+            .input("xd", xd.clone())
+            .vector("position", model.components(&com), "position")
+            .vector("velocity", model.components(&com_rate), "velocity"),
+    );
 
     for leg in 0..2 {
         let foot = add(&model.platform(), &model.foot(leg));

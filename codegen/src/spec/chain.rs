@@ -31,20 +31,16 @@ pub(super) fn assemble(
     if !parts.whole || !parts.check_references(sink) {
         return None; // what follows would only repeat it
     }
-    let tree = parts.check_tree(sink);
-    let starts = tree
-        .then(|| parts.platform(sink))
-        .flatten()
-        .map(|platform| {
-            let starts: Vec<_> = parts
-                .legs
-                .iter()
-                .map(|leg| parts.first_joint(leg, platform, sink))
-                .collect();
-            (platform, starts)
-        });
-    let (platform, starts) = starts?;
-    let starts: Option<Vec<usize>> = starts.into_iter().collect();
+    if !parts.check_tree(sink) {
+        return None;
+    }
+    let platform = parts.platform(sink)?;
+    let starts: Vec<_> = parts
+        .legs
+        .iter()
+        .map(|leg| parts.first_joint(leg, platform, sink))
+        .collect();
+    let starts: Option<Vec<usize>> = starts.into_iter().collect(); // after all legs had their say
     let chains: Vec<Vec<usize>> = starts?
         .into_iter()
         .map(|joint| parts.chain(joint))

@@ -2,8 +2,7 @@
 //! virtual legs must be of the same build and their hips mirror images.
 
 use super::Code;
-use super::diagnostic::Label;
-use super::diagnostic::Sink;
+use super::diagnostic::{Label, Sink};
 use super::format::DIRECTIONS;
 use super::gait::RawGait;
 use super::pairing::{SAME, joints, place};
