@@ -2,8 +2,18 @@
 
 #![forbid(unsafe_code)]
 
+pub mod constraints;
+pub mod cost;
+pub mod cycle;
+pub mod instant;
+mod lgl;
 pub mod model;
+pub mod motion;
+pub mod search;
+pub mod sqp;
+pub mod stance;
 pub mod states;
+pub mod trajectory;
 
 /// Generated dynamics: one module per gait of `model-spec`.
 pub mod gaits {

@@ -154,6 +154,15 @@ impl Description {
         (0..self.joints.len()).filter(|j| *j != self.unactuated)
     }
 
+    /// Length of a straight leg, m.
+    pub fn leg_length(&self) -> f64 {
+        let leg = &self.legs[0];
+        let norm = |v: &[f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let links = self.bodies.iter().filter(|b| b.parent.is_some_and(|p| p != 0));
+        let inner = links.filter(|b| b.coordinate.is_some_and(|c| (leg.first_joint..leg.end_joint).contains(&c)));
+        inner.map(|b| norm(&b.offset)).sum::<f64>() + norm(&leg.foot)
+    }
+
     /// Whether the joint connects a leg to the platform.
     pub fn hangs_on_platform(&self, joint: usize) -> bool {
         self.bodies.iter().any(|b| b.parent == Some(0) && b.coordinate == Some(joint))

@@ -33,7 +33,7 @@ impl<P: Problem> Run<'_, '_, P> {
             Phase::Optimality => self.towards_optimality(),
             Phase::Feasibility { from } => {
                 let improved = self.point.violation <= 0.9 * from || self.kkt.violation <= self.options.feasibility;
-                if improved && self.plain_step(true).is_ok() && !self.subproblem.yielding {
+                if improved && self.plain_step(true, self.prohibitive()).is_ok() && !self.subproblem.yielding {
                     // The linearized constraints agree again: the objective is back.
                     self.phase = Phase::Optimality;
                     return Ok(self.conclude(Kind::Exact));
@@ -44,26 +44,40 @@ impl<P: Problem> Run<'_, '_, P> {
     }
 
     fn towards_optimality(&mut self) -> Result<Direction, Trouble> {
-        self.plain_step(true)?;
+        let violation = self.point.violation;
+        if self.elastic {
+            // Constraints gave way last time: most likely they do again, and at the same price.
+            self.plain_step(false, self.merit.high)?;
+            if !self.subproblem.yielding {
+                return Ok(self.conclude(Kind::Exact));
+            }
+            // The best relief is at most the violation itself, so this is a fair share of it for certain.
+            if violation - self.subproblem.linear_violation >= FAIR * violation {
+                return Ok(self.conclude(Kind::Elastic));
+            }
+            self.subproblem.cap(self.prohibitive());
+            self.subproblem.solve_again(&self.view)?;
+        } else {
+            self.plain_step(true, self.prohibitive())?;
+        }
         if !self.subproblem.yielding {
             let direction = self.conclude(Kind::Exact);
             if !self.exact || self.distrust || direction != Direction::None {
                 return Ok(direction);
             }
             // The convexification counted on constraints that turned out inactive.
-            self.plain_step(false)?;
+            self.plain_step(false, self.prohibitive())?;
             if !self.subproblem.yielding {
                 return Ok(self.conclude(Kind::Exact));
             }
         }
-        let violation = self.point.violation;
         let best = self.subproblem.linear_violation;
         if self.kkt.violation > self.options.feasibility && violation - best <= HOPELESS * violation {
             self.look_at_violation();
             return self.towards_feasibility();
         }
         if self.exact {
-            self.plain_step(false)?;
+            self.plain_step(false, self.prohibitive())?;
         }
         let prohibitive = self.prohibitive();
         let mut penalty = self.merit.high;
@@ -84,8 +98,8 @@ impl<P: Problem> Run<'_, '_, P> {
         PROHIBITIVE * max_abs(&self.gradient).max(1.0)
     }
 
-    /// Solves the subproblem of the optimality phase with prohibitive prices.
-    fn plain_step(&mut self, augment: bool) -> Result<(), Trouble> {
+    /// Solves the subproblem of the optimality phase at the given price of a violation. `augment`: see [`super::convexify`].
+    fn plain_step(&mut self, augment: bool, price: f64) -> Result<(), Trouble> {
         self.set_bounds();
         self.subproblem.qp.gradient.copy_from_slice(&self.gradient);
         let newton = self.exact && !self.distrust && self.phase == Phase::Optimality;
@@ -99,7 +113,7 @@ impl<P: Problem> Run<'_, '_, P> {
             self.curvature.copy_from_slice(&self.lagrangian_model.b);
             self.subproblem.qp.hessian.copy_from_slice(&self.curvature);
         }
-        self.subproblem.cap(self.prohibitive());
+        self.subproblem.cap(price);
         self.subproblem.solve(&self.view, &self.point)
     }
 
@@ -126,6 +140,7 @@ impl<P: Problem> Run<'_, '_, P> {
     /// Takes over the subproblem's step, multipliers and promise.
     fn conclude(&mut self, kind: Kind) -> Direction {
         self.kind = kind;
+        self.elastic = kind == Kind::Elastic;
         self.d.copy_from_slice(&self.subproblem.step.d);
         multiply(&self.curvature, &self.d, &mut self.trial_gradient);
         let optimality = self.phase == Phase::Optimality;

@@ -81,6 +81,8 @@ pub(super) struct Run<'a, 'p, P: Problem> {
     pub(super) d: Vec<f64>,
     pub(super) promise: Promise,
     pub(super) kind: Kind,
+    /// The last subproblem of the optimality phase gave way.
+    pub(super) elastic: bool,
     alpha: f64,
     active: usize,
 
@@ -124,6 +126,7 @@ impl<'a, 'p, P: Problem> Run<'a, 'p, P> {
             d: zeros(),
             promise: Promise::default(),
             kind: Kind::Start,
+            elastic: false,
             alpha: 0.0,
             active: 0,
             lagrangian_model: QuasiNewton::new(n),

@@ -16,7 +16,7 @@ use super::Problem;
 /// Up to this many inequalities, screening is not worth its rounds.
 const FEW: usize = 48;
 /// Rounds in which only the worst of each run of neighbouring violated rows is added; after that, all of them.
-const GENTLE_ROUNDS: usize = 4;
+const GENTLE_ROUNDS: usize = 2;
 const NONE: usize = usize::MAX;
 
 /// Why there is no step.
@@ -221,11 +221,13 @@ impl Subproblem {
         for round in 0.. {
             start = self.solve_rows(start)?;
             view.directions(&self.step.d, &mut self.scratch, &mut self.inequality_directions)?;
+            if std::env::var_os("SQP_DEBUG").is_some() { eprintln!("  round {round} rows {} changes {} ", self.ids.len(), self.solver.changes); }
             if !self.add_violated(view, round)? {
                 break;
             }
         }
         self.collect();
+        if std::env::var_os("SQP_DEBUG").is_some() { eprintln!("qp rows {} changes {} ", self.ids.len(), self.solver.changes); }
         Ok(())
     }
 
@@ -283,6 +285,7 @@ impl Subproblem {
 
     fn add_violated<P: Problem>(&mut self, view: &Scaled<P>, round: usize) -> Result<bool, Undefined> {
         let before = self.ids.len();
+        let first_new = self.lambda.len() + before;
         let count = self.row_of.len();
         let linear = |this: &Self, i: usize| this.inequality_constants[i] + this.inequality_directions[i];
         for i in 0..count {
@@ -293,7 +296,8 @@ impl Subproblem {
             if value >= -1e-11 - 1e-10 * self.inequality_constants[i].abs() {
                 continue;
             }
-            let lowest = |j: usize| self.row_of[j] != NONE || value <= linear(self, j);
+            // Compared with the neighbours that have no row yet (or only since a moment ago).
+            let lowest = |j: usize| self.row_of[j] < first_new || value <= linear(self, j);
             if round >= GENTLE_ROUNDS || ((i == 0 || lowest(i - 1)) && (i + 1 == count || lowest(i + 1))) {
                 self.add(view, i)?;
             }

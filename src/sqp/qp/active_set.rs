@@ -38,7 +38,7 @@ pub struct ActiveSet {
     scratch: Vec<f64>,
     result: Step,
     /// Working-set changes since `solve`.
-    pub(crate) changes: usize,
+    pub(in crate::sqp) changes: usize,
 }
 
 impl ActiveSet {
@@ -126,7 +126,7 @@ impl ActiveSet {
         &self.result
     }
 
-    pub(crate) fn places(&self) -> &[Place] {
+    pub(in crate::sqp) fn places(&self) -> &[Place] {
         &self.place
     }
 

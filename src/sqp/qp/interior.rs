@@ -15,7 +15,21 @@ const ACCEPT: f64 = 1e-6;
 /// # Errors
 /// [`Failure::Inconsistent`] if hard constraints contradict each other, [`Failure::Inaccurate`] if Clarabel gives up.
 pub fn solve(qp: &Quadratic) -> Result<Step, Failure> {
+    // Prices far above the gradient ask for hard constraints; as slack costs they would drown everything else in rounding.
+    let size = qp.gradient.iter().fold(1.0_f64, |size, g| size.max(g.abs()));
+    if qp.limits.iter().any(|limit| limit.is_finite()) && qp.limits.iter().all(|limit| *limit > 1e4 * size) {
+        if let Ok(step) = solve_capped(qp, true) {
+            if step.multipliers.iter().zip(&qp.limits).all(|(y, limit)| y.abs() < *limit) {
+                return Ok(step);
+            }
+        }
+    }
+    solve_capped(qp, false)
+}
+
+fn solve_capped(qp: &Quadratic, hard: bool) -> Result<Step, Failure> {
     let n = qp.n;
+    let elastic = |i: usize| !hard && qp.limits[i].is_finite();
     // A change of units that makes H and g of order one; multipliers and penalties carry the factor.
     let size = qp.hessian.iter().chain(&qp.gradient).fold(1e-12_f64, |size, h| size.max(h.abs()));
     let mut columns: Vec<Vec<(usize, f64)>> = vec![Vec::new(); n];
@@ -29,7 +43,7 @@ pub fn solve(qp: &Quadratic) -> Result<Step, Failure> {
             for (j, a) in qp.row(i).iter().enumerate() {
                 columns[j].push((b.len(), sign * a));
             }
-            if qp.limits[i].is_finite() {
+            if elastic(i) {
                 columns.push(vec![(b.len(), sign)]);
                 cost.push(qp.limits[i] / size);
                 if equalities {
@@ -88,8 +102,11 @@ pub fn solve(qp: &Quadratic) -> Result<Step, Failure> {
     for equalities in [true, false] {
         for i in (0..qp.len()).filter(|&i| qp.equality[i] == equalities) {
             let z = next.next().unwrap_or(0.0);
-            let (low, high) = qp.range(i);
-            step.multipliers[i] = (if equalities { -z } else { z }).max(low).min(high);
+            step.multipliers[i] = if equalities { -z } else { z };
+            if elastic(i) {
+                let (low, high) = qp.range(i);
+                step.multipliers[i] = step.multipliers[i].max(low).min(high);
+            }
         }
     }
     for j in 0..n {
@@ -101,12 +118,10 @@ pub fn solve(qp: &Quadratic) -> Result<Step, Failure> {
     }
     // An elastic row may sit at its limit up to rounding: put it there, so that its residual is judged as it should be.
     for i in 0..qp.len() {
-        let (low, high) = qp.range(i);
+        let limit = qp.limits[i];
         let y = &mut step.multipliers[i];
-        for end in [low, high] {
-            if end.is_finite() && (*y - end).abs() <= 1e-7 * high {
-                *y = end;
-            }
+        if elastic(i) && limit - y.abs() <= 1e-6 * limit {
+            *y = limit.copysign(*y);
         }
     }
     if qp.residual(&step, &mut Vec::new()) <= ACCEPT { Ok(step) } else { Err(Failure::Inaccurate) }

@@ -1,0 +1,27 @@
+//! The criteria (§4.3), one file each: integrals over s of what the instants hold.
+
+mod energy;
+mod torque;
+
+use crate::instant::Instants;
+use crate::model::Description;
+use crate::motion::Criterion;
+use crate::stance::Mesh;
+
+/// Integral over s ∈ [0, 1] of a criterion's integrand, and its partial derivatives.
+#[derive(Clone, Debug, Default)]
+pub struct Integral {
+    pub value: f64,
+    /// (node, quantity, partial derivative).
+    pub partials: Vec<(usize, usize, f64)>,
+}
+
+/// Integral of the integrand of `criterion` over one half step, per unit of s (multiply by T).
+pub fn integrate(criterion: Criterion, description: &Description, mesh: &Mesh, instants: &Instants, integral: &mut Integral) {
+    integral.value = 0.0;
+    integral.partials.clear();
+    match criterion {
+        Criterion::Torque => torque::integrate(description, mesh, instants, integral),
+        Criterion::Energy => energy::integrate(description, mesh, instants, integral),
+    }
+}

@@ -1,0 +1,194 @@
+//! Where a search starts: a walk drawn from geometry alone.
+//!
+//! A plan says how high the robot stands, how long a half step takes and how its feet and platform
+//! move over it; configurations follow by inverse kinematics on the generated placement kernel, for
+//! any leg, kept near a nominal posture inside the joint ranges.
+
+use crate::model::{Description, Gait, HalfSteps};
+use crate::motion::{HalfStep, Motion};
+use nalgebra::{DMatrix, DVector};
+
+/// What distinguishes one start from another.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Height of the platform's mass centre over the foot, as a share of the straight leg.
+    pub height: f64,
+    /// Duration of each half step, s.
+    pub durations: Vec<f64>,
+    /// Height of the swing foot at mid-step, m.
+    pub clearance: f64,
+    /// How far the platform leads the feet's middle, as a share of the straight leg.
+    pub lead: f64,
+    /// Posture that inverse kinematics stays near: share of each joint's range, per joint of a leg.
+    pub posture: Vec<f64>,
+}
+
+impl Plan {
+    /// An upright walk with moderate steps.
+    pub fn default_for(d: &Description) -> Plan {
+        Plan { height: 0.85, durations: vec![duration(d, 0.22); d.phases()], clearance: 0.02, lead: 0.0, posture: vec![0.5; joints_per_leg(d)] }
+    }
+
+    /// A walk drawn at random: tall or crouched, quick or slow, joints bent either way.
+    pub fn random(d: &Description, rng: &mut fastrand::Rng) -> Plan {
+        let mut within = |lo: f64, hi: f64| lo + (hi - lo) * rng.f64();
+        let height = within(0.55, 0.97);
+        let durations = (0..d.phases()).map(|_| duration(d, within(0.08, 0.4))).collect();
+        let (clearance, lead) = (within(0.008, 0.04), within(-0.15, 0.15));
+        let posture = (0..joints_per_leg(d)).map(|_| within(0.1, 0.9)).collect();
+        Plan { height, durations, clearance, lead, posture }
+    }
+}
+
+fn joints_per_leg(d: &Description) -> usize {
+    d.legs.iter().map(|l| l.end_joint - l.first_joint).max().unwrap_or(0)
+}
+
+fn duration(d: &Description, t: f64) -> f64 {
+    let [lo, hi] = d.limits.half_step_duration;
+    t.clamp(lo * 1.2, hi * 0.8)
+}
+
+/// Where platform and swing foot are, from the stance foot, m.
+struct Target {
+    platform: [f64; 2],
+    swing: [f64; 2],
+}
+
+/// The walk of a plan at a mean speed (m/s).
+pub fn walk(gait: &dyn Gait, plan: &Plan, speed: f64) -> Motion {
+    let d = gait.description();
+    let nominal = nominal_posture(d, plan);
+    let leg = d.leg_length();
+    let total: f64 = plan.durations.iter().sum();
+    let mut durations = plan.durations.clone();
+    // Steps longer than the leg allows become quicker.
+    let longest = 0.9 * leg * if d.half_steps == HalfSteps::Mirrored { 1.0 } else { 1.5 };
+    if speed * total > longest {
+        let [shortest, _] = d.limits.half_step_duration;
+        for t in &mut durations {
+            *t = (*t * longest / (speed * total)).max(shortest * 1.05);
+        }
+    }
+    let travel = speed * durations.iter().sum::<f64>();
+    let half_steps = (0..d.phases()).map(|k| half_step(gait, plan, k, &durations, travel, &nominal)).collect();
+    Motion { half_steps }
+}
+
+fn nominal_posture(d: &Description, plan: &Plan) -> Vec<f64> {
+    let mut q = vec![0.0; d.orientations()];
+    for leg in &d.legs {
+        for (depth, j) in (leg.first_joint..leg.end_joint).enumerate() {
+            let [lo, hi] = d.joints[j].range;
+            let share = plan.posture.get(depth).copied().unwrap_or(0.5);
+            q[j] = lo + share * (hi - lo);
+        }
+    }
+    q
+}
+
+fn half_step(gait: &dyn Gait, plan: &Plan, k: usize, durations: &[f64], travel: f64, nominal: &[f64]) -> HalfStep {
+    let d = gait.description();
+    let t = durations[k];
+    let target = |s: f64| place(gait, plan, k, durations, travel, s);
+    let solve = |s: f64, near: &[f64]| inverse_kinematics(gait, k, &target(s), near);
+    let start = solve(0.0, nominal);
+    let end = solve(1.0, nominal);
+    let interior_times = d.polynomial_order - 3;
+    let prescribed = |q: &[f64]| -> Vec<f64> { (0..d.prescribed()).map(|j| q[d.prescribed_index(j)]).collect() };
+    let interior = (1..=interior_times).map(|i| prescribed(&solve(i as f64 / (interior_times + 1) as f64, nominal))).collect();
+    let delta = 1e-3;
+    let rate = |from: &[f64], to: &[f64]| -> Vec<f64> { from.iter().zip(to).map(|(a, b)| (b - a) / (delta * t)).collect() };
+    let initial_rate = rate(&start, &solve(delta, &start));
+    let final_rate = rate(&solve(1.0 - delta, &end), &end);
+    HalfStep {
+        duration: t,
+        q_initial: prescribed(&start),
+        qd_initial: prescribed(&initial_rate),
+        q_interior: interior,
+        q_final: prescribed(&end),
+        qd_final: prescribed(&final_rate),
+        beta_initial: start[d.unactuated],
+        betad_initial: initial_rate[d.unactuated],
+        beta_final: end[d.unactuated],
+        betad_final: final_rate[d.unactuated],
+    }
+}
+
+/// Platform and swing foot at `s` of half step `k`.
+fn place(gait: &dyn Gait, plan: &Plan, k: usize, durations: &[f64], travel: f64, s: f64) -> Target {
+    let d = gait.description();
+    let height = plan.height * d.leg_length();
+    let lead = plan.lead * d.leg_length();
+    let lift = 4.0 * plan.clearance * s * (1.0 - s);
+    let glide = s * s * (3.0 - 2.0 * s);
+    if d.half_steps == HalfSteps::Mirrored {
+        let x = travel * (s - 0.5) + lead;
+        return Target { platform: [x, height], swing: [travel * (2.0 * glide - 1.0), lift] };
+    }
+    // Distinct half steps: the feet keep their spread on average; each moves by the whole travel.
+    let spread = foot_spread(gait);
+    let share = durations[0] / (durations[0] + durations[1]);
+    let narrow = spread - 0.5 * travel.copysign(spread);
+    let wide = spread + 0.5 * travel.copysign(spread);
+    let start = 0.5 * narrow + lead;
+    if k == 0 {
+        let (from, to) = if spread > 0.0 { (narrow, wide) } else { (spread - 0.5 * travel, spread + 0.5 * travel) };
+        Target { platform: [start + share * travel * s, height], swing: [from + (to - from) * glide, lift] }
+    } else {
+        let fore = spread + 0.5 * travel;
+        let begin = start + share * travel;
+        Target { platform: [begin + (1.0 - share) * travel * s - fore, height], swing: [travel * glide - fore, lift] }
+    }
+}
+
+/// Forward distance from foot 1 to foot 2 with all joints at zero, m.
+fn foot_spread(gait: &dyn Gait) -> f64 {
+    let d = gait.description();
+    let mut out = vec![0.0; 2 * d.positions() * (1 + d.orientations())];
+    gait.placement(0, &vec![0.0; d.orientations()], &mut out);
+    out[d.positions()]
+}
+
+/// Configuration that places platform and swing foot, near a posture: damped least squares.
+fn inverse_kinematics(gait: &dyn Gait, leg: usize, target: &Target, near: &[f64]) -> Vec<f64> {
+    const POSTURE: f64 = 1e-3;
+    let d = gait.description();
+    let (nq, nc) = (d.orientations(), d.positions());
+    let mut out = vec![0.0; 2 * nc + 2 * nc * nq];
+    let wanted = [target.platform[0], target.platform[1], target.swing[0], target.swing[1]];
+    let rows = [0, 1, nc, nc + 1];
+    let mut q = DVector::from_column_slice(near);
+    for _ in 0..60 {
+        gait.placement(leg, q.as_slice(), &mut out);
+        let mut normal = DMatrix::<f64>::identity(nq, nq) * (POSTURE * POSTURE);
+        let mut right = DVector::<f64>::zeros(nq);
+        for (i, n) in near.iter().enumerate() {
+            right[i] = POSTURE * POSTURE * (n - q[i]);
+        }
+        for (row, wanted) in rows.iter().zip(&wanted) {
+            let gradient = &out[2 * nc + row * nq..][..nq];
+            let error = wanted - out[*row];
+            for i in 0..nq {
+                right[i] += gradient[i] * error;
+                for j in 0..nq {
+                    normal[(i, j)] += gradient[i] * gradient[j];
+                }
+            }
+        }
+        let Some(factors) = normal.cholesky() else { break };
+        let mut step = factors.solve(&right);
+        let largest = step.amax();
+        if largest > 0.3 {
+            step *= 0.3 / largest;
+        }
+        q += &step;
+        for (j, joint) in d.joints.iter().enumerate() {
+            q[j] = q[j].clamp(joint.range[0], joint.range[1]);
+        }
+        if largest < 1e-12 {
+            break;
+        }
+    }
+    q.as_slice().to_vec()
+}

@@ -1,0 +1,538 @@
+//! Single support: (β, σ) integrated over the half step, with sensitivities (eq. 8–10, 20–24).
+//!
+//! With Q(t) known, `β̇ = (σ − f2)/f1` and `σ̇ = moment of gravity`. On s = t/T the interval is cut
+//! into equal elements with five Lobatto nodes each (order 8). The nodes are also where torques and
+//! reactions are evaluated, and their quadrature is that of the criteria. Sensitivities in all
+//! parameters are those of the discrete equations: exact to rounding.
+//!
+//! Parameters of a half step ("local"): per prescribed coordinate the basis parameters of its
+//! polynomial (rates not multiplied by T), then T, β(0), σ(0).
+
+use crate::lgl::{Lobatto, NODES};
+use crate::model::{Description, Gait};
+use crate::trajectory::{Basis, Jet};
+
+/// A motion that the equations do not admit.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Undefined {
+    #[error("the inertia about the stance foot vanishes (f1 → 0): the unactuated coordinate cannot be driven in this posture")]
+    NoInertia,
+    #[error("the unactuated coordinate runs away: no motion with these joint trajectories")]
+    Diverged,
+    #[error("a value is not finite")]
+    NotFinite,
+}
+
+/// Discretization of one half step: the collocation nodes, and further instants to look at.
+#[derive(Clone, Debug)]
+pub struct Mesh {
+    pub elements: usize,
+    pub lobatto: Lobatto,
+    pub basis: Basis,
+    /// s of every node and the basis there: collocation nodes in order, then further instants.
+    pub nodes: Vec<(f64, Jet)>,
+}
+
+impl Mesh {
+    pub fn new(elements: usize, order: usize) -> Mesh {
+        let (lobatto, basis) = (Lobatto::new(), Basis::new(order));
+        let mut nodes = Vec::new();
+        for e in 0..elements {
+            let first = usize::from(e > 0);
+            for c in &lobatto.nodes[first..] {
+                let s = (e as f64 + c) / elements as f64;
+                nodes.push((s, basis.jet(s)));
+            }
+        }
+        Mesh { elements, lobatto, basis, nodes }
+    }
+
+    /// Number of collocation nodes.
+    pub fn collocation(&self) -> usize {
+        self.elements * (NODES - 1) + 1
+    }
+
+    /// Replaces the further instants.
+    pub fn set_instants(&mut self, instants: &[f64]) {
+        self.nodes.truncate(self.collocation());
+        for &s in instants {
+            self.nodes.push((s, self.basis.jet(s)));
+        }
+    }
+
+    /// Quadrature weight of each collocation node on [0, 1].
+    pub fn weights(&self) -> Vec<f64> {
+        let mut weights = vec![0.0; self.collocation()];
+        for e in 0..self.elements {
+            for (j, w) in self.lobatto.weights.iter().enumerate() {
+                weights[e * (NODES - 1) + j] += w / self.elements as f64;
+            }
+        }
+        weights
+    }
+}
+
+/// Numbers of things in a half step's parameter vector.
+#[derive(Clone, Copy, Debug)]
+pub struct Layout {
+    pub prescribed: usize,
+    /// Basis parameters per coordinate.
+    pub per_joint: usize,
+}
+
+impl Layout {
+    pub fn new(description: &Description, basis: &Basis) -> Layout {
+        Layout { prescribed: description.prescribed(), per_joint: basis.len() }
+    }
+
+    pub fn joint(&self, k: usize, parameter: usize) -> usize {
+        k * self.per_joint + parameter
+    }
+
+    pub fn duration(&self) -> usize {
+        self.prescribed * self.per_joint
+    }
+
+    pub fn beta(&self) -> usize {
+        self.duration() + 1
+    }
+
+    pub fn sigma(&self) -> usize {
+        self.duration() + 2
+    }
+
+    pub fn len(&self) -> usize {
+        self.duration() + 3
+    }
+
+    pub fn is_empty(&self) -> bool {
+        false
+    }
+}
+
+/// Q, Q̇, Q̈ and the derivatives of each in T at one instant.
+#[derive(Clone, Debug, Default)]
+pub struct Prescribed {
+    pub q: Vec<f64>,
+    pub qd: Vec<f64>,
+    pub qdd: Vec<f64>,
+    pub q_t: Vec<f64>,
+    pub qd_t: Vec<f64>,
+    pub qdd_t: Vec<f64>,
+}
+
+impl Prescribed {
+    pub fn new(n: usize) -> Prescribed {
+        let z = || vec![0.0; n];
+        Prescribed { q: z(), qd: z(), qdd: z(), q_t: z(), qd_t: z(), qdd_t: z() }
+    }
+
+    /// Evaluates eq. 15 for all prescribed coordinates.
+    pub fn evaluate(&mut self, layout: &Layout, basis: &Basis, jet: &Jet, parameters: &[f64]) {
+        let t = parameters[layout.duration()];
+        for k in 0..layout.prescribed {
+            let (mut v, mut d, mut dd) = (0.0, 0.0, 0.0);
+            let (mut rv, mut rd, mut rdd) = (0.0, 0.0, 0.0);
+            for i in 0..layout.per_joint {
+                let p = parameters[layout.joint(k, i)];
+                if basis.is_rate(i) {
+                    rv += jet.value[i] * p;
+                    rd += jet.first[i] * p;
+                    rdd += jet.second[i] * p;
+                } else {
+                    v += jet.value[i] * p;
+                    d += jet.first[i] * p;
+                    dd += jet.second[i] * p;
+                }
+            }
+            self.q[k] = v + t * rv;
+            self.qd[k] = d / t + rd;
+            self.qdd[k] = (dd / t + rdd) / t;
+            self.q_t[k] = rv;
+            self.qd_t[k] = -d / (t * t);
+            self.qdd_t[k] = -(2.0 * dd / t + rdd) / (t * t);
+        }
+    }
+}
+
+/// ∂(Q, Q̇, Q̈)/∂(basis parameter i): the same for every coordinate.
+pub fn basis_derivatives(basis: &Basis, jet: &Jet, t: f64, i: usize) -> [f64; 3] {
+    let scale = if basis.is_rate(i) { t } else { 1.0 };
+    [jet.value[i] * scale, jet.first[i] * scale / t, jet.second[i] * scale / (t * t)]
+}
+
+/// The solution of one half step. Matrices are row-major, one row of local parameters per node.
+#[derive(Clone, Debug)]
+pub struct Stance {
+    pub beta: Vec<f64>,
+    pub sigma: Vec<f64>,
+    pub betad: Vec<f64>,
+    pub sigmad: Vec<f64>,
+    /// ∂β/∂parameters, ∂σ/∂parameters at every node.
+    pub beta_p: Vec<f64>,
+    pub sigma_p: Vec<f64>,
+    /// ∂β̇/∂parameters.
+    pub betad_p: Vec<f64>,
+    /// Derivatives of T·β̇ and T·σ̇: what is integrated over s.
+    rate_p: Vec<f64>,
+    moment_p: Vec<f64>,
+    /// Per node: f1, f2, σ̇ and their β-derivatives.
+    late: Vec<[f64; 6]>,
+    early: Vec<f64>,
+    gradient: Vec<f64>,
+    prescribed: Prescribed,
+    early_length: usize,
+    layout: Layout,
+}
+
+const NEWTON_STEPS: usize = 25;
+
+impl Stance {
+    /// Workspace for the nodes that `mesh` has now.
+    pub fn new(description: &Description, mesh: &Mesh, leg: usize) -> Stance {
+        let layout = Layout::new(description, &mesh.basis);
+        let n = mesh.nodes.len();
+        let table = || vec![0.0; n * layout.len()];
+        let early_length = description.early[leg];
+        Stance {
+            beta: vec![0.0; n],
+            sigma: vec![0.0; n],
+            betad: vec![0.0; n],
+            sigmad: vec![0.0; n],
+            beta_p: table(),
+            sigma_p: table(),
+            betad_p: table(),
+            rate_p: table(),
+            moment_p: table(),
+            late: vec![[0.0; 6]; n],
+            early: vec![0.0; n * early_length],
+            gradient: vec![0.0; 4 * layout.prescribed],
+            prescribed: Prescribed::new(layout.prescribed),
+            early_length,
+            layout,
+        }
+    }
+
+    /// Integrates (β, σ) from their initial values.
+    ///
+    /// # Errors
+    /// If f1 comes near zero or changes sign, or the collocation equations have no solution.
+    pub fn integrate(&mut self, gait: &dyn Gait, leg: usize, mesh: &Mesh, parameters: &[f64]) -> Result<(), Undefined> {
+        let t = parameters[self.layout.duration()];
+        for (k, (_, jet)) in mesh.nodes.iter().enumerate() {
+            self.prescribed.evaluate(&self.layout, &mesh.basis, jet, parameters);
+            let early = &mut self.early[k * self.early_length..][..self.early_length];
+            gait.early(leg, &self.prescribed.q, &self.prescribed.qd, early);
+        }
+        self.beta[0] = parameters[self.layout.beta()];
+        self.sigma[0] = parameters[self.layout.sigma()];
+        self.rates(gait, leg, 0)?;
+        for e in 0..mesh.elements {
+            self.element(gait, leg, mesh, e, t / mesh.elements as f64)?;
+        }
+        for k in mesh.collocation()..mesh.nodes.len() {
+            (self.beta[k], self.sigma[k]) = self.state(mesh, mesh.nodes[k].0, t);
+            self.rates(gait, leg, k)?;
+        }
+        Ok(())
+    }
+
+    /// β̇, σ̇ at node `k` from β, σ.
+    fn rates(&mut self, gait: &dyn Gait, leg: usize, k: usize) -> Result<(), Undefined> {
+        let early = &self.early[k * self.early_length..][..self.early_length];
+        gait.late(leg, early, self.beta[k], &mut self.late[k]);
+        let [f1, f2, moment, ..] = self.late[k];
+        let reference = self.late[0][0];
+        if f1.abs() < 1e-3 * reference.abs() || f1.abs() < 1e-6 || f1 * reference < 0.0 {
+            return Err(Undefined::NoInertia);
+        }
+        self.betad[k] = (self.sigma[k] - f2) / f1;
+        self.sigmad[k] = moment;
+        if !(self.betad[k].is_finite() && moment.is_finite()) {
+            return Err(Undefined::NotFinite);
+        }
+        if self.beta[k].abs() > 20.0 {
+            return Err(Undefined::Diverged);
+        }
+        Ok(())
+    }
+
+    /// ∂β̇/∂β, ∂β̇/∂σ and ∂σ̇/∂β at node `k`.
+    fn partials(&self, k: usize) -> (f64, f64, f64) {
+        let [f1, _, _, f1_b, f2_b, moment_b] = self.late[k];
+        (-(f2_b + self.betad[k] * f1_b) / f1, 1.0 / f1, moment_b)
+    }
+
+    /// Solves the collocation equations of element `e` of length `h` (in time) by Newton's method.
+    fn element(&mut self, gait: &dyn Gait, leg: usize, mesh: &Mesh, e: usize, h: f64) -> Result<(), Undefined> {
+        const M: usize = NODES - 1;
+        let a = &mesh.lobatto.integral;
+        let first = e * M;
+        let (b0, s0, bd0, sd0) = (self.beta[first], self.sigma[first], self.betad[first], self.sigmad[first]);
+        for i in 1..NODES {
+            let dt = h * mesh.lobatto.nodes[i];
+            self.beta[first + i] = b0 + dt * bd0;
+            self.sigma[first + i] = s0 + dt * sd0;
+        }
+        let mut converged = false;
+        for _ in 0..NEWTON_STEPS {
+            for i in 1..NODES {
+                self.rates(gait, leg, first + i)?;
+            }
+            let mut residual = [[0.0; 2]; M];
+            let mut largest = 0.0f64;
+            for i in 1..NODES {
+                let (mut beta, mut sigma) = (b0, s0);
+                for j in 0..NODES {
+                    beta += h * a[i][j] * self.betad[first + j];
+                    sigma += h * a[i][j] * self.sigmad[first + j];
+                }
+                residual[i - 1] = [beta - self.beta[first + i], sigma - self.sigma[first + i]];
+                largest = largest.max(residual[i - 1][0].abs()).max(residual[i - 1][1].abs());
+            }
+            if !largest.is_finite() || largest > 1e6 {
+                return Err(Undefined::Diverged);
+            }
+            let system = System::new(a, h, |j| self.partials(first + j));
+            let (db, ds) = system.solve(&residual);
+            for i in 1..NODES {
+                self.beta[first + i] += db[i - 1];
+                self.sigma[first + i] += ds[i - 1];
+            }
+            if converged {
+                break;
+            }
+            // One more step after this: quadratic convergence then leaves rounding only.
+            converged = largest < 1e-9;
+        }
+        if !converged {
+            return Err(Undefined::Diverged);
+        }
+        for i in 1..NODES {
+            self.rates(gait, leg, first + i)?;
+        }
+        Ok(())
+    }
+
+    /// Sensitivities of the solution in all local parameters.
+    pub fn differentiate(&mut self, gait: &dyn Gait, leg: usize, mesh: &Mesh, parameters: &[f64]) {
+        let layout = self.layout;
+        let np = layout.len();
+        let t = parameters[layout.duration()];
+        self.beta_p[..np].fill(0.0);
+        self.sigma_p[..np].fill(0.0);
+        self.beta_p[layout.beta()] = 1.0;
+        self.sigma_p[layout.sigma()] = 1.0;
+        for k in 0..mesh.nodes.len() {
+            self.explicit(gait, leg, mesh, k, t, parameters);
+        }
+        self.complete(0, t);
+        for e in 0..mesh.elements {
+            self.element_sensitivities(mesh, e, t);
+        }
+        for k in mesh.collocation()..mesh.nodes.len() {
+            self.state_sensitivities(mesh, k);
+            self.complete(k, t);
+        }
+    }
+
+    /// Fills the rows of node `k` with ∂(T β̇), ∂(T σ̇) at fixed (β, σ).
+    fn explicit(&mut self, gait: &dyn Gait, leg: usize, mesh: &Mesh, k: usize, t: f64, parameters: &[f64]) {
+        let layout = self.layout;
+        let nt = layout.prescribed;
+        let jet = &mesh.nodes[k].1;
+        self.prescribed.evaluate(&layout, &mesh.basis, jet, parameters);
+        let early = &self.early[k * self.early_length..][..self.early_length];
+        gait.late_gradient(leg, early, self.beta[k], &mut self.gradient);
+        let f1 = self.late[k][0];
+        let row = k * layout.len();
+        let (rate, moment) = (&mut self.rate_p[row..row + layout.len()], &mut self.moment_p[row..row + layout.len()]);
+        rate.fill(0.0);
+        moment.fill(0.0);
+        let (mut rate_t, mut moment_t) = (self.betad[k], self.sigmad[k]);
+        for j in 0..nt {
+            let [f1_q, f2_q, f2_qd, moment_q] = [0, 1, 2, 3].map(|g| self.gradient[g * nt + j]);
+            let by_q = -(f2_q + self.betad[k] * f1_q) / f1;
+            let by_qd = -f2_qd / f1;
+            for i in 0..layout.per_joint {
+                let [q, qd, _] = basis_derivatives(&mesh.basis, jet, t, i);
+                rate[layout.joint(j, i)] = t * (by_q * q + by_qd * qd);
+                moment[layout.joint(j, i)] = t * moment_q * q;
+            }
+            rate_t += t * (by_q * self.prescribed.q_t[j] + by_qd * self.prescribed.qd_t[j]);
+            moment_t += t * moment_q * self.prescribed.q_t[j];
+        }
+        rate[layout.duration()] = rate_t;
+        moment[layout.duration()] = moment_t;
+    }
+
+    /// Adds what changes through (β, σ) at node `k`, whose sensitivities are known.
+    fn complete(&mut self, k: usize, t: f64) {
+        let np = self.layout.len();
+        let (g_b, g_s, m_b) = self.partials(k);
+        for p in k * np..(k + 1) * np {
+            self.rate_p[p] += t * (g_b * self.beta_p[p] + g_s * self.sigma_p[p]);
+            self.moment_p[p] += t * m_b * self.beta_p[p];
+            self.betad_p[p] = self.rate_p[p] / t;
+        }
+        self.betad_p[k * np + self.layout.duration()] -= self.betad[k] / t;
+    }
+
+    fn element_sensitivities(&mut self, mesh: &Mesh, e: usize, t: f64) {
+        const M: usize = NODES - 1;
+        let a = &mesh.lobatto.integral;
+        let np = self.layout.len();
+        let share = 1.0 / mesh.elements as f64;
+        let first = e * M;
+        let system = System::new(a, t * share, |j| self.partials(first + j));
+        for p in 0..np {
+            let at = |node: usize| node * np + p;
+            let mut right = [[0.0; 2]; M];
+            for i in 1..NODES {
+                let (mut beta, mut sigma) = (self.beta_p[at(first)], self.sigma_p[at(first)]);
+                for j in 0..NODES {
+                    // The first node's rows are complete; the others hold the explicit part.
+                    beta += share * a[i][j] * self.rate_p[at(first + j)];
+                    sigma += share * a[i][j] * self.moment_p[at(first + j)];
+                }
+                right[i - 1] = [beta, sigma];
+            }
+            let (beta, sigma) = system.solve(&right);
+            for i in 1..NODES {
+                self.beta_p[at(first + i)] = beta[i - 1];
+                self.sigma_p[at(first + i)] = sigma[i - 1];
+            }
+        }
+        for i in 1..NODES {
+            self.complete(first + i, t);
+        }
+    }
+
+    /// (β, σ) at any `s`, by the collocation polynomial.
+    pub fn state(&self, mesh: &Mesh, s: f64, t: f64) -> (f64, f64) {
+        let (first, integrals, share) = locate(mesh, s);
+        let (mut beta, mut sigma) = (self.beta[first], self.sigma[first]);
+        for (j, w) in integrals.iter().enumerate() {
+            beta += t * share * w * self.betad[first + j];
+            sigma += t * share * w * self.sigmad[first + j];
+        }
+        (beta, sigma)
+    }
+
+    /// Sensitivities of β and σ at the further instant `k`.
+    fn state_sensitivities(&mut self, mesh: &Mesh, k: usize) {
+        let (first, integrals, share) = locate(mesh, mesh.nodes[k].0);
+        let np = self.layout.len();
+        for p in 0..np {
+            let (mut beta, mut sigma) = (self.beta_p[first * np + p], self.sigma_p[first * np + p]);
+            for (j, w) in integrals.iter().enumerate() {
+                beta += share * w * self.rate_p[(first + j) * np + p];
+                sigma += share * w * self.moment_p[(first + j) * np + p];
+            }
+            self.beta_p[k * np + p] = beta;
+            self.sigma_p[k * np + p] = sigma;
+        }
+    }
+}
+
+/// Element that contains `s`: its first node, the integrals up to `s`, its share of the interval.
+fn locate(mesh: &Mesh, s: f64) -> (usize, [f64; NODES], f64) {
+    let scaled = s * mesh.elements as f64;
+    let e = (scaled as usize).min(mesh.elements - 1);
+    (e * (NODES - 1), mesh.lobatto.integrals(scaled - e as f64), 1.0 / mesh.elements as f64)
+}
+
+/// The linearized collocation equations of one element, σ eliminated, factored.
+struct System {
+    h: f64,
+    a: [[f64; NODES]; NODES],
+    partials: [(f64, f64, f64); NODES],
+    lu: [[f64; NODES - 1]; NODES - 1],
+    pivots: [usize; NODES - 1],
+}
+
+impl System {
+    fn new(a: &[[f64; NODES]; NODES], h: f64, partials: impl Fn(usize) -> (f64, f64, f64)) -> System {
+        const M: usize = NODES - 1;
+        let mut p = [(0.0, 0.0, 0.0); NODES];
+        for (j, slot) in p.iter_mut().enumerate() {
+            *slot = partials(j);
+        }
+        let mut m = [[0.0; M]; M];
+        for i in 1..NODES {
+            for j in 1..NODES {
+                let mut through = 0.0;
+                for l in 1..NODES {
+                    through += a[i][l] * p[l].1 * a[l][j];
+                }
+                m[i - 1][j - 1] = -h * a[i][j] * p[j].0 - h * h * through * p[j].2;
+            }
+            m[i - 1][i - 1] += 1.0;
+        }
+        let pivots = factor(&mut m);
+        System { h, a: *a, partials: p, lu: m, pivots }
+    }
+
+    /// δβ, δσ with `δβ − h A(β̇_β δβ + β̇_σ δσ) = right β`, `δσ − h A σ̇_β δβ = right σ`.
+    fn solve(&self, right: &[[f64; 2]; NODES - 1]) -> ([f64; NODES - 1], [f64; NODES - 1]) {
+        const M: usize = NODES - 1;
+        let mut beta = [0.0; M];
+        for i in 0..M {
+            let mut value = right[i][0];
+            for j in 0..M {
+                value += self.h * self.a[i + 1][j + 1] * self.partials[j + 1].1 * right[j][1];
+            }
+            beta[i] = value;
+        }
+        substitute(&self.lu, &self.pivots, &mut beta);
+        let mut sigma = [0.0; M];
+        for i in 0..M {
+            let mut value = right[i][1];
+            for j in 0..M {
+                value += self.h * self.a[i + 1][j + 1] * self.partials[j + 1].2 * beta[j];
+            }
+            sigma[i] = value;
+        }
+        (beta, sigma)
+    }
+}
+
+/// LU factors with partial pivoting, in place.
+fn factor<const M: usize>(m: &mut [[f64; M]; M]) -> [usize; M] {
+    let mut pivots = [0; M];
+    for k in 0..M {
+        let mut best = k;
+        for i in k + 1..M {
+            if m[i][k].abs() > m[best][k].abs() {
+                best = i;
+            }
+        }
+        pivots[k] = best;
+        m.swap(k, best);
+        let inverse = 1.0 / m[k][k];
+        for i in k + 1..M {
+            m[i][k] *= inverse;
+            for j in k + 1..M {
+                m[i][j] -= m[i][k] * m[k][j];
+            }
+        }
+    }
+    pivots
+}
+
+fn substitute<const M: usize>(lu: &[[f64; M]; M], pivots: &[usize; M], x: &mut [f64; M]) {
+    for k in 0..M {
+        x.swap(k, pivots[k]);
+    }
+    for i in 1..M {
+        for k in 0..i {
+            x[i] -= lu[i][k] * x[k];
+        }
+    }
+    for i in (0..M).rev() {
+        for k in i + 1..M {
+            x[i] -= lu[i][k] * x[k];
+        }
+        x[i] /= lu[i][i];
+    }
+}

@@ -1,0 +1,106 @@
+//! The passive impact of eq. 12 in numbers: the landing foot j comes to rest, the other one leaves.
+//!
+//! ```text
+//! | A   −D_j | | Ẋ⁺ |   | A Ẋ⁻ |
+//! | D_jᵀ   0 | | I  | = |   0  |
+//! ```
+//!
+//! Before it the stance foot was at rest, which gives ṗ⁻ from q̇⁻ (eq. 3).
+
+use super::multibody::{Multibody, Vec3};
+use crate::model::Description;
+
+/// Pivots below this share of the largest entry make a system singular.
+const SINGULAR: f64 = 1e-13;
+
+/// What the impact does.
+#[derive(Clone, Debug)]
+pub struct Impact {
+    /// Ẋ⁻, Ẋ⁺, legs not yet renamed.
+    pub before: Vec<f64>,
+    pub after: Vec<f64>,
+    /// On the landing foot, N·s.
+    pub impulse: Vec3,
+    /// Velocity of the leaving foot after, m/s.
+    pub leaving: Vec3,
+}
+
+/// Impact on the foot of leg `landing` at the end of single support on the other leg. `None` where
+/// eq. 12 has no unique solution.
+pub fn impact(description: &Description, landing: usize, q: &[f64], qd: &[f64]) -> Option<Impact> {
+    let mut multibody = Multibody::new(description);
+    multibody.set(q, qd, &vec![0.0; q.len()]);
+    let (nc, n) = (description.positions(), multibody.size());
+    let mut a = vec![0.0; n * n];
+    multibody.inertia(&mut a);
+    let feet = [0, 1].map(|leg| {
+        let mut d = vec![0.0; n * nc];
+        multibody.foot_jacobian(leg, &mut d);
+        d
+    });
+    let stance_velocity = multibody.foot(1 - landing).velocity;
+    let mut before: Vec<f64> = (0..nc).map(|c| -stance_velocity[c]).collect();
+    before.extend_from_slice(qd);
+
+    let d = &feet[landing];
+    let size = n + nc;
+    let mut system = vec![0.0; size * size];
+    let mut right = vec![0.0; size];
+    for row in 0..n {
+        for column in 0..n {
+            system[row * size + column] = a[row * n + column];
+            right[row] += a[row * n + column] * before[column];
+        }
+        for c in 0..nc {
+            system[row * size + n + c] = -d[row * nc + c];
+            system[(n + c) * size + row] = d[row * nc + c];
+        }
+    }
+    solve(&mut system, &mut right)?;
+    let velocity = |foot: &[f64], xd: &[f64]| {
+        let mut v = Vec3::zeros();
+        for (row, rate) in foot.chunks_exact(nc).zip(xd) {
+            for (v, d) in v.iter_mut().zip(row) {
+                *v += d * rate;
+            }
+        }
+        v
+    };
+    let mut impulse = Vec3::zeros();
+    impulse.as_mut_slice()[..nc].copy_from_slice(&right[n..]);
+    right.truncate(n);
+    let leaving = velocity(&feet[1 - landing], &right);
+    Some(Impact { before, after: right, impulse, leaving })
+}
+
+/// Gaussian elimination with row exchanges; `matrix` is row-major, the solution replaces `right`.
+fn solve(matrix: &mut [f64], right: &mut [f64]) -> Option<()> {
+    let n = right.len();
+    let largest = matrix.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    for k in 0..n {
+        let size = |row: &usize| matrix[row * n + k].abs();
+        let pivot = (k..n).max_by(|a, b| size(a).total_cmp(&size(b)))?;
+        let value = matrix[pivot * n + k];
+        if value.is_nan() || value.abs() <= SINGULAR * largest {
+            return None;
+        }
+        for column in 0..n {
+            matrix.swap(k * n + column, pivot * n + column);
+        }
+        right.swap(k, pivot);
+        for row in k + 1..n {
+            let factor = matrix[row * n + k] / value;
+            for column in k..n {
+                matrix[row * n + column] -= factor * matrix[k * n + column];
+            }
+            right[row] -= factor * right[k];
+        }
+    }
+    for k in (0..n).rev() {
+        for column in k + 1..n {
+            right[k] -= matrix[k * n + column] * right[column];
+        }
+        right[k] /= matrix[k * n + k];
+    }
+    Some(())
+}

@@ -1,0 +1,283 @@
+//! Dynamics of a tree of rigid bodies in numbers: Newton and Euler, projected on partial velocities.
+//!
+//! With X = [p, q], a body's velocities are linear in Ẋ: v = Σ vₖ Ẋₖ, ω = Σ ωₖ Ẋₖ. The vₖ and ωₖ are
+//! its partial velocities, and eq. 5 is, component by component,
+//!
+//! ```text
+//! Σ_bodies  m (a − g)·vₖ + (I α + ω × I ω)·ωₖ  =  generalized force on Ẋₖ
+//! ```
+//!
+//! A is the part linear in Ẍ and H the rest. Everything is 3-D and in world axes (Xf forward, Yf up,
+//! Zf right) with positions from the platform's mass centre; nothing here is symbolic, and nothing is
+//! shared with the generated code but the numbers of the specification. In a gait without z the
+//! motion across the sagittal plane, and so the depth of the hips, is ignored.
+
+use crate::model::{Description, Rotation};
+use nalgebra::{Matrix3, Vector3};
+
+/// A vector in world axes.
+pub type Vec3 = Vector3<f64>;
+
+/// A mechanism at one state. The workspace is allocated once; no method allocates.
+#[derive(Clone, Debug)]
+pub struct Multibody<'a> {
+    description: &'a Description,
+    frames: Vec<Frame>,
+    /// Body that coordinate k of q turns on its parent (θ: the platform on the world).
+    carriers: Vec<usize>,
+    /// Whether coordinate k moves body b, at `k * bodies + b`.
+    moves: Vec<bool>,
+    feet: [Point; 2],
+}
+
+/// A body: where it is and how it moves, relative to the platform's mass centre.
+#[derive(Clone, Copy, Debug)]
+struct Frame {
+    /// From body axes to world axes.
+    rotation: Matrix3<f64>,
+    /// Axis of the body's joint.
+    axis: Vec3,
+    spin: Vec3,
+    spin_rate: Vec3,
+    joint: Point,
+    com: Point,
+}
+
+/// A point with its motion relative to the platform's mass centre; m, m/s, m/s².
+#[derive(Clone, Copy, Debug)]
+pub struct Point {
+    pub position: Vec3,
+    pub velocity: Vec3,
+    pub acceleration: Vec3,
+}
+
+const ORIGIN: Point = Point { position: Vec3::new(0.0, 0.0, 0.0), velocity: Vec3::new(0.0, 0.0, 0.0), acceleration: Vec3::new(0.0, 0.0, 0.0) };
+
+impl<'a> Multibody<'a> {
+    pub fn new(description: &'a Description) -> Self {
+        let count = description.bodies.len();
+        let mut carriers = vec![0; description.orientations()];
+        let mut moves = vec![false; carriers.len() * count];
+        for (b, body) in description.bodies.iter().enumerate() {
+            for k in 0..carriers.len() {
+                let inherited = body.parent.is_some_and(|parent| moves[k * count + parent]);
+                let turned_by_theta = b == 0 && k == description.joints();
+                moves[k * count + b] = inherited || turned_by_theta || body.coordinate == Some(k);
+            }
+            if let Some(k) = body.coordinate {
+                carriers[k] = b;
+            }
+        }
+        let zero = Vec3::zeros();
+        let still = Frame { rotation: Matrix3::identity(), axis: zero, spin: zero, spin_rate: zero, joint: ORIGIN, com: ORIGIN };
+        Multibody { description, frames: vec![still; count], carriers, moves, feet: [ORIGIN; 2] }
+    }
+
+    pub fn description(&self) -> &'a Description {
+        self.description
+    }
+
+    /// Number of components of X.
+    pub fn size(&self) -> usize {
+        self.description.positions() + self.description.orientations()
+    }
+
+    /// Moves the mechanism to q, q̇, q̈ (rad, rad/s, rad/s²), with p at rest in the origin.
+    ///
+    /// With q̈ = 0, accelerations are those that come from velocities alone.
+    pub fn set(&mut self, q: &[f64], qd: &[f64], qdd: &[f64]) {
+        let joints = self.description.joints();
+        for (b, body) in self.description.bodies.iter().enumerate() {
+            let (above, axis, k) = match (body.parent, body.coordinate) {
+                (Some(parent), Some(k)) => {
+                    let above = self.frames[parent];
+                    let joint = above.point(&(above.rotation * Vec3::from(body.offset)));
+                    (Frame { joint, ..above }, body.axis, Some(k))
+                }
+                _ => {
+                    let axis = if self.description.rotation == Rotation::Roll { 0 } else { 2 };
+                    let turns = self.description.rotation != Rotation::None;
+                    let zero = Vec3::zeros();
+                    let world = Frame { rotation: Matrix3::identity(), axis: zero, spin: zero, spin_rate: zero, joint: ORIGIN, com: ORIGIN };
+                    (world, axis, turns.then_some(joints))
+                }
+            };
+            let mut frame = above;
+            if let Some(k) = k {
+                frame.turn(axis, q[k], qd[k], qdd[k]);
+            }
+            frame.com = frame.point(&(frame.rotation * Vec3::from(body.com)));
+            self.frames[b] = frame;
+        }
+        for (foot, leg) in self.feet.iter_mut().zip(&self.description.legs) {
+            let frame = &self.frames[leg.foot_body];
+            *foot = frame.point(&(frame.rotation * Vec3::from(leg.foot)));
+        }
+    }
+
+    /// The foot of a leg, relative to the platform's mass centre.
+    pub fn foot(&self, leg: usize) -> Point {
+        let foot = self.feet[leg];
+        Point {
+            position: foot.position,
+            velocity: self.in_plane(foot.velocity),
+            acceleration: self.in_plane(foot.acceleration),
+        }
+    }
+
+    /// The mass centre of a body, relative to the platform's.
+    pub fn com(&self, body: usize) -> Point {
+        let com = self.frames[body].com;
+        Point { position: com.position, velocity: self.in_plane(com.velocity), acceleration: self.in_plane(com.acceleration) }
+    }
+
+    /// Angular velocity of a body, rad/s.
+    pub fn spin(&self, body: usize) -> Vec3 {
+        self.frames[body].spin
+    }
+
+    /// Whether coordinate `k` of q moves a body relative to the platform's mass centre.
+    pub fn moves(&self, k: usize, body: usize) -> bool {
+        self.moves[k * self.frames.len() + body]
+    }
+
+    /// Axis of coordinate `k` of q.
+    pub fn axis(&self, k: usize) -> Vec3 {
+        self.frames[self.carriers[k]].axis
+    }
+
+    /// Partial velocity in q̇ₖ of the point of a body that is at `position`, m.
+    pub fn partial_velocity(&self, k: usize, body: usize, position: &Vec3) -> Vec3 {
+        if !self.moves(k, body) {
+            return Vec3::zeros();
+        }
+        let carrier = &self.frames[self.carriers[k]];
+        self.in_plane(carrier.axis.cross(&(position - carrier.joint.position)))
+    }
+
+    /// Partial angular velocity of a body in q̇ₖ.
+    pub fn partial_spin(&self, k: usize, body: usize) -> Vec3 {
+        if self.moves(k, body) { self.axis(k) } else { Vec3::zeros() }
+    }
+
+    /// Angular momentum of a body about its mass centre if it turned at `spin`.
+    pub fn spin_momentum(&self, body: usize, spin: &Vec3) -> Vec3 {
+        let rotation = &self.frames[body].rotation;
+        rotation * rotation.tr_mul(spin).component_mul(&Vec3::from(self.description.bodies[body].inertia))
+    }
+
+    /// Moment that a body's own rotation takes, about its mass centre: I α + ω × I ω, N·m.
+    pub fn spin_moment(&self, body: usize) -> Vec3 {
+        let frame = &self.frames[body];
+        self.spin_momentum(body, &frame.spin_rate) + frame.spin.cross(&self.spin_momentum(body, &frame.spin))
+    }
+
+    /// A(q) of eq. 5, row-major, kg, kg·m and kg·m².
+    pub fn inertia(&self, out: &mut [f64]) {
+        let n = self.size();
+        for row in 0..n {
+            for column in 0..n {
+                let mut sum = 0.0;
+                for (b, body) in self.description.bodies.iter().enumerate() {
+                    let [(v, w), (u, s)] = [self.partials(row, b), self.partials(column, b)];
+                    sum += body.mass * v.dot(&u) + w.dot(&self.spin_momentum(b, &s));
+                }
+                if row == column {
+                    sum += self.rotor(row);
+                }
+                out[row * n + column] = sum;
+            }
+        }
+    }
+
+    /// H(q, q̇) of eq. 5 where [`Multibody::set`] was given q̈ = 0, N and N·m.
+    pub fn bias(&self, out: &mut [f64]) {
+        for (k, sum) in out.iter_mut().enumerate().take(self.size()) {
+            *sum = 0.0;
+            for (b, body) in self.description.bodies.iter().enumerate() {
+                let (v, w) = self.partials(k, b);
+                let mut acceleration = self.com(b).acceleration;
+                acceleration.y += self.description.gravity;
+                *sum += body.mass * v.dot(&acceleration) + w.dot(&self.spin_moment(b));
+            }
+        }
+    }
+
+    /// D of eq. 3, one row per coordinate of X: ḋ = DᵀẊ.
+    pub fn foot_jacobian(&self, leg: usize, out: &mut [f64]) {
+        let nc = self.description.positions();
+        let body = self.description.legs[leg].foot_body;
+        for (k, row) in out.chunks_exact_mut(nc).enumerate().take(self.size()) {
+            let v = if k < nc { unit(k) } else { self.partial_velocity(k - nc, body, &self.feet[leg].position) };
+            row.copy_from_slice(&v.as_slice()[..nc]);
+        }
+    }
+
+    /// Kinetic and potential energy (zero at y = 0) with the platform at `p` and moving at `pd`, J.
+    pub fn energy(&self, p: &Vec3, pd: &Vec3, qd: &[f64]) -> (f64, f64) {
+        let (mut kinetic, mut potential) = (0.0, 0.0);
+        for (b, body) in self.description.bodies.iter().enumerate() {
+            let com = self.com(b);
+            let spin = self.spin(b);
+            kinetic += 0.5 * body.mass * (pd + com.velocity).norm_squared() + 0.5 * spin.dot(&self.spin_momentum(b, &spin));
+            potential += body.mass * self.description.gravity * (p.y + com.position.y);
+        }
+        for (joint, rate) in self.description.joints.iter().zip(qd) {
+            kinetic += 0.5 * joint.rotor_inertia * rate * rate;
+        }
+        (kinetic, potential)
+    }
+
+    /// Partial velocities of a body's mass centre and spin in Ẋₖ.
+    fn partials(&self, k: usize, body: usize) -> (Vec3, Vec3) {
+        let positions = self.description.positions();
+        if k < positions {
+            return (unit(k), Vec3::zeros());
+        }
+        let k = k - positions;
+        (self.partial_velocity(k, body, &self.frames[body].com.position), self.partial_spin(k, body))
+    }
+
+    /// Inertia that a rotor adds to coordinate `k` of X: it turns with its joint, gear² times as heavy.
+    fn rotor(&self, k: usize) -> f64 {
+        let joint = k.checked_sub(self.description.positions()).and_then(|j| self.description.joints.get(j));
+        joint.map_or(0.0, |j| j.rotor_inertia)
+    }
+
+    fn in_plane(&self, mut v: Vec3) -> Vec3 {
+        if !self.description.lateral {
+            v.z = 0.0;
+        }
+        v
+    }
+}
+
+impl Frame {
+    /// The point of this body that is `arm` away from its joint.
+    fn point(&self, arm: &Vec3) -> Point {
+        let swirl = self.spin.cross(arm);
+        Point {
+            position: self.joint.position + arm,
+            velocity: self.joint.velocity + swirl,
+            acceleration: self.joint.acceleration + self.spin_rate.cross(arm) + self.spin.cross(&swirl),
+        }
+    }
+
+    /// Turns the frame about its own axis 0, 1 or 2.
+    fn turn(&mut self, axis: usize, angle: f64, rate: f64, acceleration: f64) {
+        let (sin, cos) = libm::sincos(angle);
+        let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
+        let (x, y): (Vec3, Vec3) = (self.rotation.column(j).into(), self.rotation.column(k).into());
+        self.rotation.set_column(j, &(x * cos + y * sin));
+        self.rotation.set_column(k, &(y * cos - x * sin));
+        self.axis = self.rotation.column(axis).into();
+        self.spin_rate += self.axis * acceleration + self.spin.cross(&self.axis) * rate;
+        self.spin += self.axis * rate;
+    }
+}
+
+fn unit(k: usize) -> Vec3 {
+    let mut v = Vec3::zeros();
+    v[k] = 1.0;
+    v
+}

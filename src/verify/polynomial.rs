@@ -1,0 +1,64 @@
+//! Q(t) of eq. 15 in Newton's form, from the conditions that define it.
+//!
+//! Each coordinate is the polynomial through its initial and final values and rates and its interior
+//! values. With s = t/T and nodes 0, 0, 1/(m+1), …, m/(m+1), 1, 1 (a node that is there twice stands
+//! for a value and a rate), p(s) = c₀ + c₁(s − s₀) + c₂(s − s₀)(s − s₁) + …, where the cₖ are divided
+//! differences. One interior value makes the paper's fourth order; any number is allowed.
+
+use crate::motion::HalfStep;
+
+/// The prescribed coordinates of one half step as functions of time.
+#[derive(Clone, Debug)]
+pub struct Polynomials {
+    duration: f64,
+    nodes: Vec<f64>,
+    /// Divided differences, one list of `nodes.len()` per coordinate.
+    differences: Vec<f64>,
+}
+
+impl Polynomials {
+    /// From values and rates; all lists of a half step must have the length of its `q_initial`.
+    pub fn new(half_step: &HalfStep) -> Self {
+        let interior = half_step.q_interior.len();
+        let mut nodes = vec![0.0, 0.0];
+        nodes.extend((1..=interior).map(|k| k as f64 / (interior + 1) as f64));
+        nodes.extend([1.0, 1.0]);
+        let mut differences = Vec::new();
+        for k in 0..half_step.q_initial.len() {
+            let (first, last) = (half_step.q_initial[k], half_step.q_final[k]);
+            let mut values = vec![first, first];
+            values.extend(half_step.q_interior.iter().map(|q| q[k]));
+            values.extend([last, last]);
+            let rates = [half_step.qd_initial[k], half_step.qd_final[k]].map(|rate| rate * half_step.duration);
+            differences.extend(divided_differences(&nodes, values, rates));
+        }
+        Polynomials { duration: half_step.duration, nodes, differences }
+    }
+
+    /// Q, Q̇ and Q̈ of coordinate `k` at time `t`; s, rad, rad/s, rad/s².
+    pub fn at(&self, k: usize, t: f64) -> [f64; 3] {
+        let s = t / self.duration;
+        let count = self.nodes.len();
+        let [mut value, mut slope, mut curvature] = [0.0; 3];
+        for (c, node) in self.differences[k * count..][..count].iter().zip(&self.nodes).rev() {
+            let x = s - node;
+            curvature = curvature * x + 2.0 * slope;
+            slope = slope * x + value;
+            value = value * x + c;
+        }
+        [value, slope / self.duration, curvature / (self.duration * self.duration)]
+    }
+}
+
+/// Divided differences of `values`; `rates` are the derivatives at the double first and last node.
+fn divided_differences(nodes: &[f64], mut values: Vec<f64>, rates: [f64; 2]) -> Vec<f64> {
+    let n = nodes.len();
+    for order in 1..n {
+        // From the end, so that the lower orders a difference needs are still there.
+        for k in (order..n).rev() {
+            let gap = nodes[k] - nodes[k - order];
+            values[k] = if gap == 0.0 { rates[usize::from(k > 1)] } else { (values[k] - values[k - 1]) / gap };
+        }
+    }
+    values
+}

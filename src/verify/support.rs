@@ -1,0 +1,136 @@
+//! Single support on one leg at one instant: β̈, the torques and the reaction from Q̈.
+//!
+//! The stance foot S is at rest, so velocities and accelerations are those relative to it, and its
+//! reaction drops out of the balance along the free direction, in which the robot turns about S as a
+//! whole and no torque does work (a pitching or rolling platform turns with the legs; one that cannot
+//! turn is carried along by both haunches, whose torques cancel by eq. 1):
+//!
+//! ```text
+//! Σ_bodies  f·v + n·w = 0,    f = m (a − g),  n = I α + ω × I ω,   v, w: partial velocities about S
+//! ```
+//!
+//! It is linear in β̈ with the coefficient f1 of eq. 8, which gives eq. 10. Then the reaction is
+//! F = Σ f, and the torque of a joint is the moment about its axis of all it carries (eq. 5).
+
+use super::multibody::{Multibody, Vec3};
+use crate::model::{Description, Rotation};
+
+/// f1 below this share of (mass × leg²) counts as zero.
+const VANISHING: f64 = 1e-9;
+
+/// The mechanism on one leg, with room for what each body contributes.
+#[derive(Clone, Debug)]
+pub struct Support<'a> {
+    pub multibody: Multibody<'a>,
+    leg: usize,
+    /// Coordinates of q that turn together in the free direction.
+    free: Vec<usize>,
+    loads: Vec<Load>,
+    smallest_f1: f64,
+}
+
+/// Inertial force (gravity included) and moment of a body, as if β̈ were 0, and what β̈ = 1 adds.
+#[derive(Clone, Copy, Debug)]
+struct Load {
+    force: Vec3,
+    moment: Vec3,
+    force_per_beta: Vec3,
+    moment_per_beta: Vec3,
+}
+
+impl<'a> Support<'a> {
+    pub fn new(description: &'a Description, leg: usize) -> Self {
+        let free = match description.rotation {
+            Rotation::None => (0..description.joints()).filter(|j| description.hangs_on_platform(*j)).collect(),
+            Rotation::Pitch | Rotation::Roll => vec![description.joints()],
+        };
+        let zero = Vec3::zeros();
+        let load = Load { force: zero, moment: zero, force_per_beta: zero, moment_per_beta: zero };
+        let length = leg_length(description);
+        Support {
+            multibody: Multibody::new(description),
+            leg,
+            free,
+            loads: vec![load; description.bodies.len()],
+            smallest_f1: VANISHING * description.total_mass() * length * length,
+        }
+    }
+
+    /// β̈ by eq. 10; also written into `qdd`, whose other entries are Q̈. `None` where f1 vanishes.
+    pub fn accelerate(&mut self, q: &[f64], qd: &[f64], qdd: &mut [f64]) -> Option<f64> {
+        let Support { multibody, leg, free, loads, smallest_f1 } = self;
+        let description = multibody.description();
+        let beta = description.unactuated;
+        qdd[beta] = 0.0;
+        multibody.set(q, qd, qdd);
+        let stance = multibody.foot(*leg);
+        let stance_body = description.legs[*leg].foot_body;
+        let of_stance = |k| multibody.partial_velocity(k, stance_body, &stance.position);
+        let beta_of_stance = of_stance(beta);
+        let free_of_stance = free.iter().fold(Vec3::zeros(), |sum, k| sum + of_stance(*k));
+        let (mut balance, mut f1) = (0.0, 0.0);
+        for (b, (body, load)) in description.bodies.iter().zip(loads).enumerate() {
+            let com = multibody.com(b);
+            let mut acceleration = com.acceleration - stance.acceleration;
+            acceleration.y += description.gravity;
+            let partial = |k| multibody.partial_velocity(k, b, &com.position);
+            let spin_per_beta = multibody.partial_spin(beta, b);
+            *load = Load {
+                force: acceleration * body.mass,
+                moment: multibody.spin_moment(b),
+                force_per_beta: (partial(beta) - beta_of_stance) * body.mass,
+                moment_per_beta: multibody.spin_momentum(b, &spin_per_beta),
+            };
+            let velocity = free.iter().fold(-free_of_stance, |sum, k| sum + partial(*k));
+            let spin = free.iter().fold(Vec3::zeros(), |sum, k| sum + multibody.partial_spin(*k, b));
+            balance += load.force.dot(&velocity) + load.moment.dot(&spin);
+            f1 += load.force_per_beta.dot(&velocity) + load.moment_per_beta.dot(&spin);
+        }
+        for &k in &*free {
+            let rotor = description.joints.get(k).map_or(0.0, |joint| joint.rotor_inertia);
+            balance += rotor * qdd[k];
+            f1 += if k == beta { rotor } else { 0.0 };
+        }
+        if f1.is_nan() || f1.abs() <= *smallest_f1 {
+            return None;
+        }
+        let acceleration = -balance / f1;
+        qdd[beta] = acceleration;
+        Some(acceleration)
+    }
+
+    /// The torque of every joint, N·m, and the reaction on the stance foot, N, for the state of the
+    /// last [`Support::accelerate`], whose `qdd` is complete.
+    pub fn torques(&self, qdd: &[f64], torques: &mut [f64]) -> Vec3 {
+        let description = self.multibody.description();
+        let beta = qdd[description.unactuated];
+        let loads = || self.loads.iter().map(|l| (l.force + l.force_per_beta * beta, l.moment + l.moment_per_beta * beta));
+        let reaction = loads().fold(Vec3::zeros(), |sum, (force, _)| sum + force);
+        let stance = self.multibody.foot(self.leg).position;
+        let stance_body = description.legs[self.leg].foot_body;
+        for (k, torque) in torques.iter_mut().enumerate().take(description.joints()) {
+            let mut sum = description.joints[k].rotor_inertia * qdd[k];
+            for (b, (force, moment)) in loads().enumerate() {
+                if self.multibody.moves(k, b) {
+                    let partial = self.multibody.partial_velocity(k, b, &self.multibody.com(b).position);
+                    sum += force.dot(&partial) + moment.dot(&self.multibody.axis(k));
+                }
+            }
+            *torque = sum - reaction.dot(&self.multibody.partial_velocity(k, stance_body, &stance));
+        }
+        reaction
+    }
+}
+
+/// Length of the stretched leg 1, m: the unit in which lengths are judged.
+pub fn leg_length(description: &Description) -> f64 {
+    let leg = &description.legs[0];
+    let mut length = Vec3::from(leg.foot).norm();
+    let mut body = leg.foot_body;
+    // Up to the body that hangs on the platform, whose own offset is where the hip is mounted.
+    while let Some(parent) = description.bodies[body].parent.filter(|p| *p != 0) {
+        length += Vec3::from(description.bodies[body].offset).norm();
+        body = parent;
+    }
+    length
+}

@@ -1,0 +1,85 @@
+//! Every derivative that the optimizer uses, against central differences of the same path.
+
+use piaffe::cycle::Cycle;
+use piaffe::gaits::GAITS;
+use piaffe::model::Gait;
+use piaffe::motion::Criterion;
+use piaffe::search::guess::{Plan, walk};
+use piaffe::sqp::{Problem, Values};
+
+fn check(gait: &dyn Gait, criterion: Criterion, seed: u64) {
+    let name = gait.description().gait;
+    let speed = 0.6;
+    let mut rng = fastrand::Rng::with_seed(seed);
+    let mut cycle = Cycle::new(gait, criterion, speed);
+    cycle.set_instants(&vec![vec![0.013, 0.4437, 0.98]; gait.description().phases()]);
+    let mut values = Values::zeros(cycle.equalities(), cycle.inequalities());
+    // Not every drawn walk exists: the first that does is used.
+    let theta = loop {
+        let plan = Plan::random(gait.description(), &mut rng);
+        let theta = cycle.theta(&walk(gait, &plan, speed));
+        if cycle.evaluate(&theta, &mut values).is_ok() {
+            break theta;
+        }
+    };
+    let n = theta.len();
+    cycle.linearize(&theta).unwrap();
+    let mut gradient = vec![0.0; n];
+    cycle.gradient(&mut gradient);
+    let rows = |count: usize, get: &dyn Fn(usize, &mut [f64])| -> Vec<Vec<f64>> {
+        (0..count)
+            .map(|i| {
+                let mut row = vec![0.0; n];
+                get(i, &mut row);
+                row
+            })
+            .collect()
+    };
+    let equalities = rows(cycle.equalities(), &|i, r| cycle.equality_row(i, r));
+    let inequalities = rows(cycle.inequalities(), &|i, r| cycle.inequality_row(i, r));
+
+    // The cheap product with a direction agrees with the rows.
+    let direction: Vec<f64> = (0..n).map(|_| rng.f64() - 0.5).collect();
+    let mut product = vec![0.0; inequalities.len()];
+    cycle.inequality_directions(&direction, &mut product);
+    for (row, p) in inequalities.iter().zip(&product) {
+        let expected: f64 = row.iter().zip(&direction).map(|(a, b)| a * b).sum();
+        assert!((expected - p).abs() <= 1e-9 * (1.0 + expected.abs()), "{name}: directions");
+    }
+
+    let mut plus = values.clone();
+    let mut minus = values.clone();
+    for k in 0..n {
+        let h = 1e-6;
+        let mut moved = theta.clone();
+        moved[k] = theta[k] + h;
+        cycle.evaluate(&moved, &mut plus).unwrap();
+        moved[k] = theta[k] - h;
+        cycle.evaluate(&moved, &mut minus).unwrap();
+        let compare = |what: String, exact: f64, plus: f64, minus: f64, size: f64| {
+            let difference = (plus - minus) / (2.0 * h);
+            let tolerance = 1e-6 * (size + exact.abs()) + 1e-8 * (plus.abs() + minus.abs()) / h * 1e-6;
+            assert!((difference - exact).abs() <= tolerance.max(2e-6), "{name} {what} by {k}: exact {exact}, difference {difference}");
+        };
+        let largest = gradient.iter().fold(1.0f64, |a, b| a.max(b.abs()));
+        compare(format!("{criterion:?}"), gradient[k], plus.objective, minus.objective, largest);
+        for i in 0..equalities.len() {
+            compare(format!("equality {i} {:?}", cycle.equality_label(i)), equalities[i][k], plus.equalities[i], minus.equalities[i], 10.0);
+        }
+        for i in 0..inequalities.len() {
+            let size = inequalities[i].iter().fold(1.0f64, |a, b| a.max(b.abs()));
+            compare(format!("inequality {i} {:?}", cycle.label(i)), inequalities[i][k], plus.inequalities[i], minus.inequalities[i], size);
+        }
+    }
+}
+
+#[test]
+fn gradients_agree_with_differences_for_every_gait_and_criterion() {
+    for gait in GAITS {
+        for criterion in Criterion::ALL {
+            for seed in 0..3 {
+                check(*gait, criterion, seed);
+            }
+        }
+    }
+}
