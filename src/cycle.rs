@@ -92,6 +92,36 @@ impl<'a> Cycle<'a> {
         self.gait.description()
     }
 
+    /// The same problem, with collocation nodes only.
+    pub fn again(&self) -> Cycle<'a> {
+        Cycle::new(self.gait, self.criterion, self.speed)
+    }
+
+    /// Number of half steps that define the gait.
+    pub fn phases(&self) -> usize {
+        self.phases.len()
+    }
+
+    /// Number of instants looked at in a half step.
+    pub fn nodes(&self, phase: usize) -> usize {
+        self.phases[phase].mesh.nodes.len()
+    }
+
+    /// Instant `node` as a share of its half step.
+    pub fn instant(&self, phase: usize, node: usize) -> f64 {
+        self.phases[phase].mesh.nodes[node].0
+    }
+
+    /// Number of path constraints.
+    pub fn path_count(&self) -> usize {
+        self.path.len()
+    }
+
+    /// Scaled value of a path constraint in the last simulated motion.
+    pub fn path_value(&self, phase: usize, node: usize, constraint: usize) -> f64 {
+        self.path[constraint].value(&self.phases[phase].instants, node)
+    }
+
     /// Number of variables Θ.
     pub fn dimension(&self) -> usize {
         self.phases.len() * self.per_phase()
@@ -266,6 +296,12 @@ impl<'a> Cycle<'a> {
         } else {
             Label { name: "mean speed".into(), half_step: self.phases.len(), time: 0.0 }
         }
+    }
+
+    /// Which variable's bound `i` is, in words: only durations are bounded.
+    pub fn bound_label(&self, i: usize) -> Label {
+        let phase = i / self.per_phase();
+        Label { name: "duration of the half step".into(), half_step: phase + 1, time: 0.0 }
     }
 
     /// Both criteria of the last simulated motion.

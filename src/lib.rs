@@ -9,11 +9,13 @@ pub mod instant;
 mod lgl;
 pub mod model;
 pub mod motion;
+pub mod result;
 pub mod search;
 pub mod sqp;
 pub mod stance;
 pub mod states;
 pub mod trajectory;
+pub mod verify;
 
 /// Generated dynamics: one module per gait of `model-spec`.
 pub mod gaits {

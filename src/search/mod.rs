@@ -1,3 +1,6 @@
-//! Finding optima: where to start, and what to do with what is found.
+//! Finding optima: where to start, how to descend, and what to keep.
 
 pub mod guess;
+pub mod local;
+pub mod multi_start;
+pub mod refine;

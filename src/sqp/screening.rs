@@ -16,7 +16,7 @@ use super::Problem;
 /// Up to this many inequalities, screening is not worth its rounds.
 const FEW: usize = 48;
 /// Rounds in which only the worst of each run of neighbouring violated rows is added; after that, all of them.
-const GENTLE_ROUNDS: usize = 2;
+const GENTLE_ROUNDS: usize = 8;
 const NONE: usize = usize::MAX;
 
 /// Why there is no step.
@@ -221,13 +221,11 @@ impl Subproblem {
         for round in 0.. {
             start = self.solve_rows(start)?;
             view.directions(&self.step.d, &mut self.scratch, &mut self.inequality_directions)?;
-            if std::env::var_os("SQP_DEBUG").is_some() { eprintln!("  round {round} rows {} changes {} ", self.ids.len(), self.solver.changes); }
             if !self.add_violated(view, round)? {
                 break;
             }
         }
         self.collect();
-        if std::env::var_os("SQP_DEBUG").is_some() { eprintln!("qp rows {} changes {} ", self.ids.len(), self.solver.changes); }
         Ok(())
     }
 

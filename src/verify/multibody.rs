@@ -51,7 +51,17 @@ pub struct Point {
     pub acceleration: Vec3,
 }
 
-const ORIGIN: Point = Point { position: Vec3::new(0.0, 0.0, 0.0), velocity: Vec3::new(0.0, 0.0, 0.0), acceleration: Vec3::new(0.0, 0.0, 0.0) };
+const ZERO: Vec3 = Vec3::new(0.0, 0.0, 0.0);
+const ORIGIN: Point = Point { position: ZERO, velocity: ZERO, acceleration: ZERO };
+/// The world's axes.
+const STILL: Frame = Frame {
+    rotation: Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0),
+    axis: ZERO,
+    spin: ZERO,
+    spin_rate: ZERO,
+    joint: ORIGIN,
+    com: ORIGIN,
+};
 
 impl<'a> Multibody<'a> {
     pub fn new(description: &'a Description) -> Self {
@@ -68,9 +78,7 @@ impl<'a> Multibody<'a> {
                 carriers[k] = b;
             }
         }
-        let zero = Vec3::zeros();
-        let still = Frame { rotation: Matrix3::identity(), axis: zero, spin: zero, spin_rate: zero, joint: ORIGIN, com: ORIGIN };
-        Multibody { description, frames: vec![still; count], carriers, moves, feet: [ORIGIN; 2] }
+        Multibody { description, frames: vec![STILL; count], carriers, moves, feet: [ORIGIN; 2] }
     }
 
     pub fn description(&self) -> &'a Description {
@@ -86,28 +94,24 @@ impl<'a> Multibody<'a> {
     ///
     /// With q̈ = 0, accelerations are those that come from velocities alone.
     pub fn set(&mut self, q: &[f64], qd: &[f64], qdd: &[f64]) {
-        let joints = self.description.joints();
+        let axis = if self.description.rotation == Rotation::Roll { 0 } else { 2 };
+        let theta = self.description.joints();
         for (b, body) in self.description.bodies.iter().enumerate() {
-            let (above, axis, k) = match (body.parent, body.coordinate) {
-                (Some(parent), Some(k)) => {
-                    let above = self.frames[parent];
-                    let joint = above.point(&(above.rotation * Vec3::from(body.offset)));
-                    (Frame { joint, ..above }, body.axis, Some(k))
+            let (above, here) = self.frames.split_at_mut(b);
+            let Some(frame) = here.first_mut() else { continue };
+            match body.parent.and_then(|parent| above.get(parent)) {
+                Some(parent) => {
+                    frame.joint = parent.point(&(parent.rotation * Vec3::from(body.offset)));
+                    frame.follow(parent);
                 }
-                _ => {
-                    let axis = if self.description.rotation == Rotation::Roll { 0 } else { 2 };
-                    let turns = self.description.rotation != Rotation::None;
-                    let zero = Vec3::zeros();
-                    let world = Frame { rotation: Matrix3::identity(), axis: zero, spin: zero, spin_rate: zero, joint: ORIGIN, com: ORIGIN };
-                    (world, axis, turns.then_some(joints))
-                }
-            };
-            let mut frame = above;
-            if let Some(k) = k {
-                frame.turn(axis, q[k], qd[k], qdd[k]);
+                None => frame.follow(&STILL),
+            }
+            match body.coordinate {
+                Some(k) => frame.turn(body.axis, q[k], qd[k], qdd[k]),
+                None if b == 0 && theta < q.len() => frame.turn(axis, q[theta], qd[theta], qdd[theta]),
+                None => {}
             }
             frame.com = frame.point(&(frame.rotation * Vec3::from(body.com)));
-            self.frames[b] = frame;
         }
         for (foot, leg) in self.feet.iter_mut().zip(&self.description.legs) {
             let frame = &self.frames[leg.foot_body];
@@ -141,9 +145,10 @@ impl<'a> Multibody<'a> {
         self.moves[k * self.frames.len() + body]
     }
 
-    /// Axis of coordinate `k` of q.
-    pub fn axis(&self, k: usize) -> Vec3 {
-        self.frames[self.carriers[k]].axis
+    /// Axis of coordinate `k` of q, and where it is.
+    pub fn axis(&self, k: usize) -> (Vec3, Vec3) {
+        let carrier = &self.frames[self.carriers[k]];
+        (carrier.axis, carrier.joint.position)
     }
 
     /// Partial velocity in q̇ₖ of the point of a body that is at `position`, m.
@@ -151,13 +156,13 @@ impl<'a> Multibody<'a> {
         if !self.moves(k, body) {
             return Vec3::zeros();
         }
-        let carrier = &self.frames[self.carriers[k]];
-        self.in_plane(carrier.axis.cross(&(position - carrier.joint.position)))
+        let (axis, joint) = self.axis(k);
+        self.in_plane(axis.cross(&(position - joint)))
     }
 
     /// Partial angular velocity of a body in q̇ₖ.
     pub fn partial_spin(&self, k: usize, body: usize) -> Vec3 {
-        if self.moves(k, body) { self.axis(k) } else { Vec3::zeros() }
+        if self.moves(k, body) { self.axis(k).0 } else { Vec3::zeros() }
     }
 
     /// Angular momentum of a body about its mass centre if it turned at `spin`.
@@ -168,8 +173,11 @@ impl<'a> Multibody<'a> {
 
     /// Moment that a body's own rotation takes, about its mass centre: I α + ω × I ω, N·m.
     pub fn spin_moment(&self, body: usize) -> Vec3 {
-        let frame = &self.frames[body];
-        self.spin_momentum(body, &frame.spin_rate) + frame.spin.cross(&self.spin_momentum(body, &frame.spin))
+        let Frame { rotation, spin, spin_rate, .. } = &self.frames[body];
+        // In the body's axes, where the inertia is diagonal.
+        let inertia = Vec3::from(self.description.bodies[body].inertia);
+        let (spin, spin_rate) = (rotation.tr_mul(spin), rotation.tr_mul(spin_rate));
+        rotation * (spin_rate.component_mul(&inertia) + spin.cross(&spin.component_mul(&inertia)))
     }
 
     /// A(q) of eq. 5, row-major, kg, kg·m and kg·m².
@@ -261,6 +269,11 @@ impl Frame {
             velocity: self.joint.velocity + swirl,
             acceleration: self.joint.acceleration + self.spin_rate.cross(arm) + self.spin.cross(&swirl),
         }
+    }
+
+    /// Takes over the rotation and spin of the body above.
+    fn follow(&mut self, above: &Frame) {
+        (self.rotation, self.spin, self.spin_rate) = (above.rotation, above.spin, above.spin_rate);
     }
 
     /// Turns the frame about its own axis 0, 1 or 2.

@@ -26,6 +26,8 @@ pub struct Support<'a> {
     /// Coordinates of q that turn together in the free direction.
     free: Vec<usize>,
     loads: Vec<Load>,
+    /// Force and moment about the platform's mass centre of each body with all that it carries.
+    carried: Vec<(Vec3, Vec3)>,
     smallest_f1: f64,
 }
 
@@ -52,13 +54,14 @@ impl<'a> Support<'a> {
             leg,
             free,
             loads: vec![load; description.bodies.len()],
+            carried: vec![(zero, zero); description.bodies.len()],
             smallest_f1: VANISHING * description.total_mass() * length * length,
         }
     }
 
     /// β̈ by eq. 10; also written into `qdd`, whose other entries are Q̈. `None` where f1 vanishes.
     pub fn accelerate(&mut self, q: &[f64], qd: &[f64], qdd: &mut [f64]) -> Option<f64> {
-        let Support { multibody, leg, free, loads, smallest_f1 } = self;
+        let Support { multibody, leg, free, loads, smallest_f1, .. } = self;
         let description = multibody.description();
         let beta = description.unactuated;
         qdd[beta] = 0.0;
@@ -74,12 +77,11 @@ impl<'a> Support<'a> {
             let mut acceleration = com.acceleration - stance.acceleration;
             acceleration.y += description.gravity;
             let partial = |k| multibody.partial_velocity(k, b, &com.position);
-            let spin_per_beta = multibody.partial_spin(beta, b);
             *load = Load {
                 force: acceleration * body.mass,
                 moment: multibody.spin_moment(b),
                 force_per_beta: (partial(beta) - beta_of_stance) * body.mass,
-                moment_per_beta: multibody.spin_momentum(b, &spin_per_beta),
+                moment_per_beta: multibody.spin_momentum(b, &multibody.partial_spin(beta, b)),
             };
             let velocity = free.iter().fold(-free_of_stance, |sum, k| sum + partial(*k));
             let spin = free.iter().fold(Vec3::zeros(), |sum, k| sum + multibody.partial_spin(*k, b));
@@ -101,22 +103,36 @@ impl<'a> Support<'a> {
 
     /// The torque of every joint, N·m, and the reaction on the stance foot, N, for the state of the
     /// last [`Support::accelerate`], whose `qdd` is complete.
-    pub fn torques(&self, qdd: &[f64], torques: &mut [f64]) -> Vec3 {
+    pub fn torques(&mut self, qdd: &[f64], torques: &mut [f64]) -> Vec3 {
         let description = self.multibody.description();
         let beta = qdd[description.unactuated];
-        let loads = || self.loads.iter().map(|l| (l.force + l.force_per_beta * beta, l.moment + l.moment_per_beta * beta));
-        let reaction = loads().fold(Vec3::zeros(), |sum, (force, _)| sum + force);
+        let mut reaction = Vec3::zeros();
+        for total in &mut self.carried {
+            *total = (Vec3::zeros(), Vec3::zeros());
+        }
+        // Children before parents: what a body carries is its own load and that of its children.
+        for (b, (body, load)) in description.bodies.iter().zip(&self.loads).enumerate().rev() {
+            let force = load.force + load.force_per_beta * beta;
+            let moment = load.moment + load.moment_per_beta * beta + self.multibody.com(b).position.cross(&force);
+            reaction += force;
+            let (carried, carried_moment) = (self.carried[b].0 + force, self.carried[b].1 + moment);
+            self.carried[b] = (carried, carried_moment);
+            if let Some(parent) = body.parent {
+                self.carried[parent].0 += carried;
+                self.carried[parent].1 += carried_moment;
+            }
+        }
         let stance = self.multibody.foot(self.leg).position;
         let stance_body = description.legs[self.leg].foot_body;
-        for (k, torque) in torques.iter_mut().enumerate().take(description.joints()) {
-            let mut sum = description.joints[k].rotor_inertia * qdd[k];
-            for (b, (force, moment)) in loads().enumerate() {
-                if self.multibody.moves(k, b) {
-                    let partial = self.multibody.partial_velocity(k, b, &self.multibody.com(b).position);
-                    sum += force.dot(&partial) + moment.dot(&self.multibody.axis(k));
-                }
+        for (b, body) in description.bodies.iter().enumerate() {
+            let Some(k) = body.coordinate else { continue };
+            let (mut force, mut moment) = self.carried[b];
+            if self.multibody.moves(k, stance_body) {
+                force -= reaction;
+                moment -= stance.cross(&reaction);
             }
-            *torque = sum - reaction.dot(&self.multibody.partial_velocity(k, stance_body, &stance));
+            let (axis, joint) = self.multibody.axis(k);
+            torques[k] = axis.dot(&(moment - joint.cross(&force))) + description.joints[k].rotor_inertia * qdd[k];
         }
         reaction
     }

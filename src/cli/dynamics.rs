@@ -1,0 +1,11 @@
+//! `piaffe dynamics`: the generated kernels at given states, as JSON.
+
+use super::{input, output};
+use piaffe::model::Gait;
+use piaffe::states::{States, evaluate};
+
+pub fn run(gait: &dyn Gait, file: &str) -> anyhow::Result<bool> {
+    let states: States = input::read_json(file)?;
+    output::json_to("-", &evaluate(gait, &states)?)?;
+    Ok(true)
+}

@@ -1,0 +1,80 @@
+//! The main job: every gait and criterion at 0.6 m/s, beside the values of the paper (§6.2, §6.3).
+
+use super::optimize::{progress, solve};
+use super::output;
+use piaffe::gaits::GAITS;
+use piaffe::motion::Criterion;
+use piaffe::result::GaitResult;
+use piaffe::search::multi_start::Settings;
+use std::io::Write;
+use std::path::Path;
+use std::time::Instant;
+
+const SPEED: f64 = 0.6;
+
+/// Cost and half-step durations that the paper reports.
+struct Published {
+    gait: &'static str,
+    criterion: Criterion,
+    cost: f64,
+    durations: &'static str,
+}
+
+const PUBLISHED: [Published; 6] = [
+    Published { gait: "trot", criterion: Criterion::Energy, cost: 29.98, durations: "0.31" },
+    Published { gait: "amble", criterion: Criterion::Energy, cost: 55.13, durations: "0.17" },
+    Published { gait: "curvet", criterion: Criterion::Energy, cost: 78.87, durations: "0.31/0.196" },
+    Published { gait: "trot", criterion: Criterion::Torque, cost: 112.17, durations: "0.35" },
+    Published { gait: "amble", criterion: Criterion::Torque, cost: 256.8, durations: "0.404" },
+    Published { gait: "curvet", criterion: Criterion::Torque, cost: 802.26, durations: "0.456/0.298" },
+];
+
+pub fn run(folder: &Path) -> anyhow::Result<bool> {
+    let started = Instant::now();
+    std::fs::create_dir_all(folder).map_err(|e| anyhow::anyhow!("cannot create {}: {e}", folder.display()))?;
+    println!("Optimal gaits at {SPEED} m/s\n");
+    println!(
+        "{:<8} {:<9} {:>10} {:<7} {:<13} {:>9} {:>9} {:>9}  {:>10} {:<12} active",
+        "gait", "criterion", "cost", "unit", "half steps, s", "violation", "cycle", "KKT", "paper", "half steps"
+    );
+    let settings = Settings::default();
+    let bar = progress((GAITS.len() * Criterion::ALL.len() * settings.starts) as u64, "starts");
+    let mut all = true;
+    for criterion in Criterion::ALL {
+        for gait in GAITS {
+            let name = gait.description().gait;
+            bar.set_message(format!("{name}, {}", criterion.name()));
+            let result = solve(*gait, criterion, SPEED, &settings, &bar);
+            output::write_json(&folder.join(format!("{name}-{}.json", criterion.name())), &result)?;
+            bar.suspend(|| output::quiet_when_closed(row(&result)))?;
+            all &= result.is_optimal();
+        }
+    }
+    bar.finish_and_clear();
+    println!("\nEvery optimum is local: the best of {} starts. The paper does not give all of the robot's parameters", settings.starts);
+    println!("(see model-spec/robot.toml), so its values are a yardstick, not a like-for-like comparison.");
+    println!("{:.1} s; results in {}", started.elapsed().as_secs_f64(), folder.display());
+    Ok(all)
+}
+
+fn row(r: &GaitResult) -> std::io::Result<()> {
+    let mut out = std::io::stdout().lock();
+    let durations: Vec<String> = r.durations.iter().map(|t| format!("{t:.3}")).collect();
+    let published = PUBLISHED.iter().find(|p| p.gait == r.gait && p.criterion == r.criterion);
+    let (paper, paper_steps) = published.map_or((String::new(), ""), |p| (format!("{:.2}", p.cost), p.durations));
+    match (r.cost, &r.receipt) {
+        (Some(cost), Some(receipt)) => writeln!(
+            out,
+            "{:<8} {:<9} {cost:>10.4} {:<7} {:<13} {:>9.1e} {:>9.1e} {:>9.1e}  {paper:>10} {paper_steps:<12} {}",
+            r.gait,
+            r.criterion.name(),
+            r.criterion.unit(),
+            durations.join("/"),
+            receipt.max_violation,
+            receipt.cycle_error,
+            receipt.kkt_residual,
+            receipt.active.len(),
+        ),
+        _ => writeln!(out, "{:<8} {:<9} {} {paper:>10} {paper_steps:<12}", r.gait, r.criterion.name(), r.message),
+    }
+}

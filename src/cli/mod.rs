@@ -1,0 +1,108 @@
+//! `piaffe`: what a person types, and what comes back.
+
+mod dynamics;
+mod input;
+mod main_job;
+mod optimize;
+mod output;
+mod summary;
+
+use clap::builder::PossibleValuesParser;
+use clap::{Parser, Subcommand};
+use piaffe::gaits::GAITS;
+use piaffe::model::Gait;
+use piaffe::motion::Criterion;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Exit code of a run that ended, but without an optimum.
+const NO_OPTIMUM: u8 = 3;
+
+#[derive(Parser)]
+#[command(
+    version,
+    about = "Optimal gaits of a legged robot, each with a receipt",
+    long_about = "Optimal periodic gaits of the robot in model-spec/, each with a receipt.\n\n\
+                  Without a command: finds the optimum of every gait and criterion at 0.6 m/s, prints them\n\
+                  beside the published values and writes the results to a folder.",
+    after_help = "Exit codes: 0 success, 1 something failed, 2 wrong usage, 3 no optimum (infeasible or not converged)."
+)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+    /// Folder for the results of the main job.
+    #[arg(long, default_value = "results", value_name = "DIR")]
+    out: PathBuf,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Evaluate the generated dynamics at given states.
+    #[command(after_help = "Example:\n  echo '{\"states\":[{\"X\":[0,0.28,0.4,-0.8,0.1,-0.5],\"Xdot\":[0,0,1,0,0,0]}]}' | piaffe dynamics trot -")]
+    Dynamics {
+        #[arg(value_parser = gait_names())]
+        gait: String,
+        /// JSON: {"states": [{"X": […], "Xdot": […], "Xddot": […], "Gamma": […]}]}; `-` reads standard input.
+        #[arg(default_value = "-", value_name = "FILE|-")]
+        file: String,
+    },
+    /// Find the optimal periodic motion of a gait at a mean speed.
+    #[command(after_help = "Example:\n  piaffe optimize trot --criterion energy --speed 0.6 --json trot.json")]
+    Optimize {
+        #[arg(value_parser = gait_names())]
+        gait: String,
+        /// What to minimize per metre: the work of the actuators or the squares of their torques.
+        #[arg(long, value_enum, default_value = "energy")]
+        criterion: Criterion,
+        /// Mean forward speed, m/s.
+        #[arg(long, value_parser = positive)]
+        speed: f64,
+        /// Of the random starts.
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+        /// Number of starts; the first is a default walk, the others are drawn at random.
+        #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+        starts: u32,
+        /// Write the whole result as JSON; `-` is standard output.
+        #[arg(long, value_name = "FILE|-")]
+        json: Option<String>,
+    },
+}
+
+/// Runs the program.
+pub fn run() -> ExitCode {
+    let arguments = Arguments::parse();
+    let outcome = match arguments.command {
+        None => main_job::run(&arguments.out),
+        Some(Command::Dynamics { gait, file }) => dynamics::run(by_name(&gait), &file),
+        Some(Command::Optimize { gait, criterion, speed, seed, starts, json }) => {
+            let settings = piaffe::search::multi_start::Settings { starts: starts as usize, seed };
+            optimize::run(by_name(&gait), criterion, speed, &settings, json.as_deref())
+        }
+    };
+    match outcome {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(NO_OPTIMUM),
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn gait_names() -> PossibleValuesParser {
+    PossibleValuesParser::new(GAITS.iter().map(|g| g.description().gait))
+}
+
+/// The gait of that name; the parser has admitted no other names.
+fn by_name(name: &str) -> &'static dyn Gait {
+    GAITS.iter().copied().find(|g| g.description().gait == name).unwrap_or(GAITS[0])
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(v) if v.is_finite() && v > 0.0 => Ok(v),
+        Ok(_) => Err("must be a positive number of m/s".into()),
+        Err(_) => Err("is not a number; write for example 0.6".into()),
+    }
+}

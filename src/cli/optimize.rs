@@ -1,0 +1,40 @@
+//! `piaffe optimize`: one gait, one criterion, one speed.
+
+use super::{output, summary};
+use indicatif::{ProgressBar, ProgressStyle};
+use piaffe::model::Gait;
+use piaffe::motion::Criterion;
+use piaffe::result::GaitResult;
+use piaffe::search::multi_start::{Settings, search};
+use std::time::Instant;
+
+pub fn run(gait: &dyn Gait, criterion: Criterion, speed: f64, settings: &Settings, json: Option<&str>) -> anyhow::Result<bool> {
+    let bar = progress(settings.starts as u64, "starts");
+    let result = solve(gait, criterion, speed, settings, &bar);
+    bar.finish_and_clear();
+    if json != Some("-") {
+        output::quiet_when_closed(summary::print(gait.description(), &result))?;
+    }
+    if let Some(target) = json {
+        output::json_to(target, &result)?;
+        if target != "-" {
+            println!("written to {target}");
+        }
+    }
+    Ok(result.is_optimal())
+}
+
+/// Searches and verifies; the bar advances with every start.
+pub fn solve(gait: &dyn Gait, criterion: Criterion, speed: f64, settings: &Settings, bar: &ProgressBar) -> GaitResult {
+    let started = Instant::now();
+    let found = search(gait, criterion, speed, settings, &|_| bar.inc(1));
+    GaitResult::new(gait, criterion, speed, &found, settings.seed, || started.elapsed().as_secs_f64())
+}
+
+/// A bar on standard error; hidden where that is no terminal.
+pub fn progress(length: u64, unit: &str) -> ProgressBar {
+    let bar = ProgressBar::new(length);
+    let style = ProgressStyle::with_template(&format!("{{msg}} {{bar:30}} {{pos}}/{{len}} {unit} {{elapsed}}"));
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar
+}

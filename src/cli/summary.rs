@@ -1,0 +1,70 @@
+//! A result for a person.
+
+use piaffe::model::Description;
+use piaffe::motion::Criterion;
+use piaffe::result::{GaitResult, Status};
+use std::io::Write;
+
+/// Motor speeds are read in rev/min.
+fn rev_per_min(joint_speed: f64, gear: f64) -> f64 {
+    joint_speed * gear * 60.0 / std::f64::consts::TAU
+}
+
+/// Prints all there is to know about a result.
+pub fn print(description: &Description, r: &GaitResult) -> std::io::Result<()> {
+    let mut out = std::io::stdout().lock();
+    writeln!(out, "{} of {}, least {} at {} m/s: {}", r.gait, r.robot, r.criterion.name(), r.speed, r.message)?;
+    if !r.conflicts.is_empty() {
+        for c in &r.conflicts {
+            let what = if c.violation > 1e-8 { format!("violated by {:.3} (scaled)", c.violation) } else { "in the way".into() };
+            writeln!(out, "  {:<34} half step {}, t = {:.3} s: {what}", c.constraint, c.half_step, c.time)?;
+        }
+    }
+    if r.status == Status::Infeasible {
+        writeln!(out, "  Try another speed, or loosen one of these limits in the specification.")?;
+    }
+    if let (Some(cost), Some(costs)) = (r.cost, r.costs) {
+        writeln!(out, "  cost            {cost:.4} {}", r.criterion.unit())?;
+        for criterion in Criterion::ALL {
+            writeln!(out, "  {:<15} {:.4} {}", criterion.name(), costs.of(criterion), criterion.unit())?;
+        }
+    }
+    if let Some(step) = r.step_length {
+        let durations: Vec<String> = r.durations.iter().map(|t| format!("{t:.4} s")).collect();
+        writeln!(out, "  half steps      {}", durations.join(" + "))?;
+        writeln!(out, "  step length     {step:.4} m")?;
+    }
+    if !r.peaks.is_empty() {
+        writeln!(out, "  peaks at the joints     torque, N·m        speed, rad/s (motor, rev/min)   envelope margin")?;
+    }
+    for (peak, joint) in r.peaks.iter().zip(description.joints) {
+        writeln!(
+            out,
+            "    {:<16} {:8.3} of {:<6.1} {:10.3} of {:<6.2} ({:4.0} of {:4.0}) {:14.1} %",
+            peak.name,
+            peak.torque,
+            peak.max_torque,
+            peak.speed,
+            peak.unloaded_speed,
+            rev_per_min(peak.speed, joint.gear),
+            rev_per_min(peak.unloaded_speed, joint.gear),
+            100.0 * peak.envelope_margin
+        )?;
+    }
+    if let Some(receipt) = &r.receipt {
+        writeln!(out, "  receipt         largest violation {:.1e}, cycle error {:.1e}, KKT residual {:.1e} ({} points per half step)", receipt.max_violation, receipt.cycle_error, receipt.kkt_residual, receipt.grid)?;
+        let active: Vec<String> = receipt.findings.iter().map(|f| format!("{} (half step {}, t = {:.3} s)", f.constraint, f.half_step, f.time)).collect();
+        writeln!(out, "  active          {}", if active.is_empty() { "nothing".into() } else { active.join("\n                  ") })?;
+        if let Some(worst) = receipt.worst.as_ref().filter(|_| r.status != Status::Optimal) {
+            writeln!(out, "  worst           {} (half step {}, t = {:.3} s): {:.2e}", worst.constraint, worst.half_step, worst.time, worst.margin)?;
+        }
+    }
+    if r.local_optima.len() > 1 {
+        writeln!(out, "  local optima    (cost, half steps, how many of {} starts led there)", r.search.starts)?;
+        for o in &r.local_optima {
+            let durations: Vec<String> = o.durations.iter().map(|t| format!("{t:.3}")).collect();
+            writeln!(out, "    {:12.4}  {}  {}", o.cost, durations.join("/"), o.reached)?;
+        }
+    }
+    writeln!(out, "  time            {:.3} s", r.seconds)
+}

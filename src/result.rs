@@ -1,0 +1,238 @@
+//! A result as it leaves the program: what was asked, what was found, and its receipt.
+
+use crate::cycle::Label;
+use crate::model::Gait;
+use crate::motion::{Costs, Criterion, HalfStep};
+use crate::search::local::Local;
+use crate::search::multi_start::Found;
+use crate::sqp;
+use crate::verify::{Finding, JointPeak, verify};
+use serde::{Deserialize, Serialize};
+
+/// Largest violation, cycle error and KKT residual with which a result counts as an optimum.
+pub const VIOLATION: f64 = 1e-6;
+pub const CYCLE_ERROR: f64 = 1e-6;
+pub const KKT_RESIDUAL: f64 = 1e-5;
+/// Points per half step on which the constraints are checked.
+pub const GRID: usize = 2001;
+
+/// How an optimization ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Status {
+    /// A local optimum whose receipt holds.
+    Optimal,
+    /// The constraints conflict from every start.
+    Infeasible,
+    /// No point was found that can be called an optimum.
+    NotConverged,
+    /// An optimum for the optimizer, but its receipt does not hold.
+    ReceiptFailed,
+}
+
+/// What was asked and what was found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GaitResult {
+    pub gait: String,
+    pub robot: String,
+    pub criterion: Criterion,
+    /// Mean forward speed asked for, m/s.
+    pub speed: f64,
+    pub status: Status,
+    /// In plain words.
+    pub message: String,
+    /// The criterion, as the receipt's own integration gives it. Absent without an optimum.
+    pub cost: Option<f64>,
+    pub costs: Option<Costs>,
+    /// s, per half step that defines the gait.
+    #[serde(default)]
+    pub durations: Vec<f64>,
+    /// Travel in these half steps, m.
+    pub step_length: Option<f64>,
+    /// Order of the joint polynomials.
+    pub polynomial_order: usize,
+    /// The motion (see `HalfStep`); of a failed search none.
+    #[serde(default)]
+    pub variables: Vec<HalfStep>,
+    pub receipt: Option<Receipt>,
+    #[serde(default)]
+    pub peaks: Vec<JointPeak>,
+    /// For an infeasible problem: the constraints that conflict, worst first.
+    #[serde(default)]
+    pub conflicts: Vec<ConflictEntry>,
+    /// All distinct local optima found, best first.
+    #[serde(default)]
+    pub local_optima: Vec<LocalOptimum>,
+    pub search: SearchEntry,
+    /// Wall time of search and receipt.
+    pub seconds: f64,
+    pub version: String,
+}
+
+/// What stands behind a result.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Receipt {
+    /// Largest violation of any constraint on the grid, in natural units.
+    pub max_violation: f64,
+    /// How far the motion is from a cycle under an independent integration.
+    pub cycle_error: f64,
+    /// Scaled first-order optimality residual.
+    pub kkt_residual: f64,
+    /// Names of the active constraints.
+    pub active: Vec<String>,
+    /// The same with half step, time and margin.
+    pub findings: Vec<Finding>,
+    /// The constraint that is violated most, if any is.
+    pub worst: Option<Finding>,
+    pub grid: usize,
+}
+
+/// A constraint that takes part in a conflict.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ConflictEntry {
+    pub constraint: String,
+    /// 1-based.
+    pub half_step: usize,
+    /// s.
+    pub time: f64,
+    /// Scaled; 0 for one that holds but is in the way of others.
+    pub violation: f64,
+    pub weight: f64,
+}
+
+/// One of several local optima.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LocalOptimum {
+    pub cost: f64,
+    pub durations: Vec<f64>,
+    /// How many starts led to it.
+    pub reached: usize,
+}
+
+/// How the search was set up.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SearchEntry {
+    pub starts: usize,
+    pub seed: u64,
+}
+
+impl GaitResult {
+    /// Verifies what a search found: the best optimum whose receipt holds is the result.
+    pub fn new(gait: &dyn Gait, criterion: Criterion, speed: f64, found: &Found, seed: u64, seconds: impl Fn() -> f64) -> GaitResult {
+        let mut result = GaitResult::empty(gait, criterion, speed, SearchEntry { starts: found.starts, seed });
+        result.local_optima = found
+            .optima
+            .iter()
+            .map(|o| LocalOptimum {
+                cost: o.local.costs.of(criterion),
+                durations: o.local.motion.half_steps.iter().map(|h| h.duration).collect(),
+                reached: o.reached,
+            })
+            .collect();
+        for (rank, optimum) in found.optima.iter().enumerate() {
+            result.take(gait, &optimum.local);
+            if result.status == Status::Optimal {
+                // What ranks before it has no receipt: it does not leave the program as an optimum.
+                result.local_optima.drain(..rank);
+                break;
+            }
+        }
+        if found.optima.is_empty() {
+            result.explain(found.failure.as_ref());
+        }
+        result.seconds = seconds();
+        result
+    }
+
+    fn empty(gait: &dyn Gait, criterion: Criterion, speed: f64, search: SearchEntry) -> GaitResult {
+        let d = gait.description();
+        GaitResult {
+            gait: d.gait.into(),
+            robot: d.robot.into(),
+            criterion,
+            speed,
+            status: Status::NotConverged,
+            message: String::new(),
+            cost: None,
+            costs: None,
+            durations: Vec::new(),
+            step_length: None,
+            polynomial_order: d.polynomial_order,
+            variables: Vec::new(),
+            receipt: None,
+            peaks: Vec::new(),
+            conflicts: Vec::new(),
+            local_optima: Vec::new(),
+            search,
+            seconds: 0.0,
+            version: env!("CARGO_PKG_VERSION").into(),
+        }
+    }
+
+    /// Makes `local` the result, with its receipt.
+    fn take(&mut self, gait: &dyn Gait, local: &Local) {
+        let receipt = match verify(gait.description(), &local.motion, self.speed, GRID) {
+            Ok(receipt) => receipt,
+            Err(error) => {
+                self.status = Status::ReceiptFailed;
+                self.message = format!("the optimizer's motion could not be re-derived: {error}");
+                return;
+            }
+        };
+        let kkt_residual = local.kkt.stationarity.max(local.kkt.complementarity);
+        let mut reasons = Vec::new();
+        let mut must = |what: &str, value: f64, limit: f64| {
+            if value.is_nan() || value > limit {
+                reasons.push(format!("{what} is {value:.1e}, not {limit:.0e} or less"));
+            }
+        };
+        must("the largest violation", receipt.max_violation, VIOLATION);
+        must("the cycle error", receipt.cycle_error, CYCLE_ERROR);
+        must("the KKT residual", kkt_residual, KKT_RESIDUAL);
+        self.status = if reasons.is_empty() { Status::Optimal } else { Status::ReceiptFailed };
+        self.message =
+            if reasons.is_empty() { "local optimum, receipt holds".into() } else { format!("no receipt: {}", reasons.join("; ")) };
+        let holds = self.status == Status::Optimal;
+        self.cost = holds.then(|| receipt.costs.of(self.criterion));
+        self.costs = holds.then_some(receipt.costs);
+        self.step_length = Some(receipt.step_length);
+        self.durations = local.motion.half_steps.iter().map(|h| h.duration).collect();
+        self.variables = local.motion.half_steps.clone();
+        self.peaks = receipt.peaks;
+        self.receipt = Some(Receipt {
+            max_violation: receipt.max_violation,
+            cycle_error: receipt.cycle_error,
+            kkt_residual,
+            active: receipt.active.iter().map(|f| f.constraint.clone()).collect(),
+            findings: receipt.active,
+            worst: receipt.worst,
+            grid: receipt.grid,
+        });
+    }
+
+    /// Says why there is no optimum.
+    fn explain(&mut self, failure: Option<&Local>) {
+        let Some(local) = failure else {
+            self.message = "no start led anywhere".into();
+            return;
+        };
+        self.conflicts = local
+            .conflicts
+            .iter()
+            .map(|c| {
+                let Label { name, half_step, time } = c.label.clone();
+                ConflictEntry { constraint: name, half_step, time, violation: c.violation, weight: c.weight }
+            })
+            .collect();
+        (self.status, self.message) = match local.status {
+            sqp::Status::Infeasible => (Status::Infeasible, "infeasible: these constraints conflict".into()),
+            sqp::Status::IterationLimit => (Status::NotConverged, "not converged within the iteration limit".into()),
+            sqp::Status::Undefined => (Status::NotConverged, "no start gives a motion that exists".into()),
+            _ => (Status::NotConverged, "no further progress before the optimality conditions held".into()),
+        };
+    }
+
+    pub fn is_optimal(&self) -> bool {
+        self.status == Status::Optimal
+    }
+}

@@ -1,0 +1,108 @@
+//! One local optimum: from a start to a motion that satisfies every constraint between nodes too.
+
+use super::refine::{dips, probe};
+use crate::cycle::{Cycle, Label};
+use crate::model::Gait;
+use crate::motion::{Costs, Criterion, Motion};
+use crate::sqp::{self, Control, KktResidual, Options, Solution, Status};
+
+/// Violation between nodes (scaled) at which refinement stops.
+const DENSE: f64 = 3e-7;
+const ROUNDS: usize = 6;
+
+/// Where a descent ended.
+#[derive(Clone, Debug)]
+pub struct Local {
+    pub status: Status,
+    pub theta: Vec<f64>,
+    pub motion: Motion,
+    pub costs: Costs,
+    pub kkt: KktResidual,
+    /// Largest violation (scaled) on the optimizer's own fine grid.
+    pub violation: f64,
+    pub iterations: usize,
+    /// With `Status::Infeasible`: what contradicts what, worst first.
+    pub conflicts: Vec<Conflict>,
+}
+
+/// A constraint that takes part in a contradiction.
+#[derive(Clone, Debug)]
+pub struct Conflict {
+    pub label: Label,
+    /// By how much it is violated (scaled); 0 for one that holds but is in the way of others.
+    pub violation: f64,
+    /// Its weight in the proof that the violation cannot be reduced.
+    pub weight: f64,
+}
+
+/// Options of the solver for a problem of this kind.
+pub fn options(cycle: &Cycle) -> Options {
+    Options { tolerance: 1e-6, feasibility: 1e-8, iteration_limit: 400, scale: Some(cycle.scale()), ..Options::default() }
+}
+
+/// Minimizes from `start`; `observe` sees every iteration and can stop it.
+pub fn descend(
+    gait: &dyn Gait,
+    criterion: Criterion,
+    speed: f64,
+    start: &[f64],
+    observe: &mut dyn FnMut(&sqp::Iteration) -> Control,
+) -> Local {
+    let mut cycle = Cycle::new(gait, criterion, speed);
+    let mut fine = probe(&cycle);
+    let options = options(&cycle);
+    let mut solution = sqp::minimize(&mut cycle, start, &options, observe);
+    let mut iterations = solution.iterations;
+    let mut violation = f64::INFINITY;
+    for _ in 0..ROUNDS {
+        let Ok(found) = dips(&mut fine, &solution.x) else { break };
+        violation = found.violation;
+        if !solution.status.is_optimal() || violation <= DENSE {
+            break;
+        }
+        cycle.set_instants(&found.instants);
+        solution = sqp::minimize(&mut cycle, &solution.x, &options, observe);
+        iterations += solution.iterations;
+    }
+    finish(&mut cycle, solution, violation, iterations)
+}
+
+fn finish(cycle: &mut Cycle, solution: Solution, violation: f64, iterations: usize) -> Local {
+    // The motion and its labels are those of the last point simulated: make that the solution.
+    let defined = cycle.simulate(&solution.x).is_ok();
+    let conflicts = if defined { conflicts(cycle, &solution) } else { Vec::new() };
+    Local {
+        status: if defined { solution.status } else { Status::Undefined },
+        motion: cycle.motion(),
+        costs: cycle.costs(),
+        theta: solution.x,
+        kkt: solution.kkt,
+        violation,
+        iterations,
+        conflicts,
+    }
+}
+
+fn conflicts(cycle: &Cycle, solution: &Solution) -> Vec<Conflict> {
+    let Some(proof) = &solution.conflict else { return Vec::new() };
+    let mut list: Vec<Conflict> = Vec::new();
+    let mut add = |label: Label, violation: f64, weight: f64| {
+        // Neighbouring instants of one constraint are one participant: its worst.
+        match list.iter_mut().find(|c| c.label.name == label.name && c.label.half_step == label.half_step) {
+            Some(known) if known.violation >= violation => known.weight += weight,
+            Some(known) => *known = Conflict { label, violation, weight: known.weight + weight },
+            None => list.push(Conflict { label, violation, weight }),
+        }
+    };
+    for i in proof.conflicting_equalities() {
+        add(cycle.equality_label(i), solution.values.equalities[i].abs(), proof.equalities[i].abs());
+    }
+    for i in proof.conflicting_inequalities() {
+        add(cycle.label(i), (-solution.values.inequalities[i]).max(0.0), proof.inequalities[i]);
+    }
+    for i in proof.conflicting_bounds() {
+        add(cycle.bound_label(i), 0.0, proof.bounds[i].abs());
+    }
+    list.sort_by(|a, b| b.violation.total_cmp(&a.violation).then(b.weight.total_cmp(&a.weight)));
+    list
+}
