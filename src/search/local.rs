@@ -8,7 +8,7 @@ use crate::sqp::{self, Control, KktResidual, Options, Solution, Status};
 
 /// Violation between nodes (scaled) at which refinement stops.
 const DENSE: f64 = 3e-7;
-const ROUNDS: usize = 6;
+const ROUNDS: usize = 8;
 
 /// Where a descent ended.
 #[derive(Clone, Debug)]
@@ -54,13 +54,14 @@ pub fn descend(
     let mut solution = sqp::minimize(&mut cycle, start, &options, observe);
     let mut iterations = solution.iterations;
     let mut violation = f64::INFINITY;
+    let mut instants = vec![Vec::new(); cycle.phases()];
     for _ in 0..ROUNDS {
         let Ok(found) = dips(&mut fine, &solution.x) else { break };
         violation = found.violation;
-        if !solution.status.is_optimal() || violation <= DENSE {
+        if !solution.status.is_optimal() || violation <= DENSE || !found.join(&mut instants) {
             break;
         }
-        cycle.set_instants(&found.instants);
+        cycle.set_instants(&instants);
         solution = sqp::minimize(&mut cycle, &solution.x, &options, observe);
         iterations += solution.iterations;
     }

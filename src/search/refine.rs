@@ -2,8 +2,9 @@
 //!
 //! The optimizer imposes path constraints at finitely many instants. After each solution the motion is
 //! looked at on a fine grid; the lowest points of constraints that come near zero become instants of
-//! their own, and the problem is solved again from there. A dip's depth falls with the square of the
-//! distance to the nearest instant, so a few rounds suffice and no margin is needed.
+//! their own, besides those found before, and the problem is solved again from there. A dip's depth
+//! falls with the square of the distance to the nearest instant, so a few rounds suffice and no
+//! margin is needed.
 
 use crate::cycle::Cycle;
 use crate::stance::Undefined;
@@ -13,7 +14,7 @@ const GRID: usize = 240;
 /// Constraints above this (scaled) are left alone.
 const NEAR: f64 = 2e-3;
 /// Instants closer than this (share of the half step) are one.
-const SAME: f64 = 4e-3;
+const SAME: f64 = 3e-4;
 
 /// What the grid shows.
 #[derive(Clone, Debug, Default)]
@@ -30,6 +31,22 @@ pub fn probe<'a>(cycle: &Cycle<'a>) -> Cycle<'a> {
     let grid: Vec<f64> = (1..GRID).map(|k| k as f64 / GRID as f64).collect();
     probe.set_instants(&vec![grid; cycle.phases()]);
     probe
+}
+
+impl Dips {
+    /// Adds to `known` the instants that are not there yet; tells whether there were any.
+    pub fn join(&self, known: &mut [Vec<f64>]) -> bool {
+        let mut added = false;
+        for (known, new) in known.iter_mut().zip(&self.instants) {
+            for at in new {
+                if known.iter().all(|k| (k - at).abs() > SAME) {
+                    known.push(*at);
+                    added = true;
+                }
+            }
+        }
+        added
+    }
 }
 
 /// Finds where constraints dip in the motion of `theta`.

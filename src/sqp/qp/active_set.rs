@@ -18,6 +18,12 @@ use crate::sqp::dense::{axpy, dot, max_abs, multiply};
 const INDEPENDENT: f64 = 1e-9;
 /// The same for rows that are only a guess: neighbouring samples give nearly parallel rows, and one of them is enough.
 const INDEPENDENT_GUESS: f64 = 1e-5;
+/// A row that depends on the working set (to the square root of that) is not worth a violation below `EXCUSED`: at a degenerate
+/// vertex rounding alone violates the rows beyond the n-th.
+const DEPENDENT: f64 = 1e-6;
+const EXCUSED: f64 = 1e-10;
+/// Violation that counts otherwise.
+const VIOLATED: f64 = 1e-13;
 /// Residual of the optimality conditions at which the answer stands.
 const ACCEPT: f64 = 1e-9;
 
@@ -29,6 +35,8 @@ pub struct ActiveSet {
     /// Constraints of the working set, in the order of the factorization. Ids: 0..n lower bounds, n..2n upper, then rows.
     working: Vec<usize>,
     place: Vec<Place>,
+    /// Constraints whose violation is a matter of rounding.
+    excused: Vec<bool>,
     /// Multipliers by id; bounds have nonnegative ones here.
     y: Vec<f64>,
     d: Vec<f64>,
@@ -310,13 +318,13 @@ impl ActiveSet {
     fn pick(&self, qp: &Quadratic) -> Option<(usize, f64)> {
         let n = self.n;
         let mut worst = (0.0, None);
-        let reach = 1e-13 * (1.0 + max_abs(&self.d));
+        let reach = 1.0 + max_abs(&self.d);
         for id in 0..self.place.len() {
             if !self.exists(qp, id) || self.place[id] == Place::Working {
                 continue;
             }
             let value = self.value(qp, id);
-            let tolerance = reach + 1e-13 * self.constant(qp, id).abs();
+            let tolerance = if self.excused[id] { EXCUSED } else { VIOLATED } * (reach + self.constant(qp, id).abs());
             let (violation, sign) = match self.place[id] {
                 Place::Off if self.equality(qp, id) => (value.abs(), -value.signum()),
                 Place::Off => (-value, 1.0),
@@ -339,7 +347,20 @@ impl ActiveSet {
     fn ascend(&mut self, qp: &Quadratic) -> Result<(), Failure> {
         let limit = 50 + 10 * (self.n + qp.len());
         let mut count = 0;
+        self.excused.clear();
+        self.excused.resize(self.place.len(), false);
         while let Some((p, sign)) = self.pick(qp) {
+            if !self.excused[p] {
+                self.project(qp, p);
+                if !self.independent(DEPENDENT) {
+                    // Look again without the rounding that the steps have left in d; the row is picked again only if it is
+                    // violated by more than can be excused.
+                    self.excused[p] = true;
+                    self.stationarity(qp);
+                    self.correct(qp);
+                    continue;
+                }
+            }
             // Raise (or lower) the multiplier of p until p holds, is dropped, or its limit is reached.
             loop {
                 count += 1;

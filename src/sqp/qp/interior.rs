@@ -116,6 +116,15 @@ fn solve_capped(qp: &Quadratic, hard: bool) -> Result<Step, Failure> {
             }
         }
     }
+    // An active bound holds exactly: what follows reads the active set off the point.
+    for j in 0..n {
+        for (bound, sign) in [(qp.lower[j], 1.0), (qp.upper[j], -1.0)] {
+            let nu = sign * step.bound_multipliers[j] / size;
+            if nu > (step.d[j] - bound).abs() {
+                step.d[j] = bound;
+            }
+        }
+    }
     // An elastic row may sit at its limit up to rounding: put it there, so that its residual is judged as it should be.
     for i in 0..qp.len() {
         let limit = qp.limits[i];

@@ -1,0 +1,12 @@
+//! The independent verification against the generated kernels, physical identities and broken motions.
+
+#[path = "verify/dynamics.rs"]
+mod dynamics;
+#[path = "verify/motions.rs"]
+mod motions;
+#[path = "verify/numerics.rs"]
+mod numerics;
+#[path = "verify/physics.rs"]
+mod physics;
+#[path = "verify/receipts.rs"]
+mod receipts;

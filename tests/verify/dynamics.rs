@@ -1,0 +1,112 @@
+//! Newton–Euler in numbers against the generated kernels: two derivations, one physics.
+
+use crate::motions::{Random, gaits};
+use piaffe::model::Gait;
+use piaffe::verify::{impact::impact, multibody::Multibody, support::Support};
+
+const TOLERANCE: f64 = 1e-11;
+
+fn compare(what: &str, gait: &dyn Gait, numeric: &[f64], generated: &[f64]) {
+    assert_eq!(numeric.len(), generated.len(), "{what}");
+    let scale = generated.iter().fold(1.0, |m: f64, x| m.max(x.abs()));
+    for (a, b) in numeric.iter().zip(generated) {
+        assert!((a - b).abs() <= TOLERANCE * scale, "{what} of the {}: {numeric:?} instead of {generated:?}", gait.description().gait);
+    }
+}
+
+fn filled(n: usize, fill: impl FnOnce(&mut [f64])) -> Vec<f64> {
+    let mut out = vec![0.0; n];
+    fill(&mut out);
+    out
+}
+
+/// Ordinary postures at ordinary rates.
+fn states(gait: &dyn Gait) -> Vec<(Vec<f64>, Vec<f64>, Vec<f64>)> {
+    let n = gait.description().orientations();
+    let mut random = Random::new(7);
+    (0..50).map(|_| (random.list(n, 1.3), random.list(n, 8.0), random.list(n, 60.0))).collect()
+}
+
+#[test]
+fn floating_model_agrees() {
+    for gait in gaits() {
+        let d = gait.description();
+        let (np, nq) = (d.positions(), d.orientations());
+        let n = np + nq;
+        let mut multibody = Multibody::new(d);
+        for (q, qd, _) in states(gait) {
+            multibody.set(&q, &qd, &vec![0.0; nq]);
+            compare("A", gait, &filled(n * n, |o| multibody.inertia(o)), &filled(n * n, |o| gait.inertia(&q, o)));
+            compare("H", gait, &filled(n, |o| multibody.bias(o)), &filled(n, |o| gait.bias(&q, &qd, o)));
+            let x = [vec![0.0; np], q.clone()].concat();
+            for leg in 0..2 {
+                let foot = multibody.foot(leg);
+                compare("d", gait, &foot.position.as_slice()[..np], &filled(np, |o| gait.foot(leg, &x, o)));
+                let jacobian = filled(n * np, |o| multibody.foot_jacobian(leg, o));
+                compare("D", gait, &jacobian, &filled(n * np, |o| gait.foot_jacobian(leg, &q, o)));
+                compare("Hi", gait, &foot.acceleration.as_slice()[..np], &filled(np, |o| gait.foot_bias(leg, &q, &qd, o)));
+            }
+        }
+    }
+}
+
+#[test]
+fn energy_agrees() {
+    for gait in gaits() {
+        let d = gait.description();
+        let np = d.positions();
+        let mut multibody = Multibody::new(d);
+        for (q, qd, extra) in states(gait) {
+            multibody.set(&q, &qd, &vec![0.0; q.len()]);
+            let mut p = nalgebra::Vector3::zeros();
+            let mut pd = p;
+            p.as_mut_slice()[..np].copy_from_slice(&extra[..np]);
+            pd.as_mut_slice()[..np].copy_from_slice(&extra[1..=np]);
+            let (kinetic, potential) = multibody.energy(&p, &pd, &qd);
+            let (x, xd) = ([&extra[..np], &q[..]].concat(), [&extra[1..=np], &qd[..]].concat());
+            compare("energy", gait, &[kinetic, potential], &filled(2, |o| gait.energy(&x, &xd, o)));
+        }
+    }
+}
+
+#[test]
+fn single_support_agrees() {
+    for gait in gaits() {
+        let d = gait.description();
+        let (np, nq, joints) = (d.positions(), d.orientations(), d.joints());
+        for leg in 0..2 {
+            let mut support = Support::new(d, leg);
+            for (q, qd, mut qdd) in states(gait) {
+                let prescribed: Vec<f64> = (0..d.prescribed()).map(|k| qdd[d.prescribed_index(k)]).collect();
+                let generated = filled(np + nq + joints + np, |o| gait.inverse(leg, &q, &qd, &prescribed, o));
+                let f1 = filled(5, |o| gait.momentum_terms(leg, &q, &qd, o))[0];
+                if f1.abs() < 0.05 {
+                    continue; // close to where eq. 10 is singular, both are as inaccurate as they must be
+                }
+                support.accelerate(&q, &qd, &mut qdd).unwrap();
+                let mut torques = vec![0.0; joints];
+                let force = support.torques(&qdd, &mut torques);
+                let numeric = [&qdd[..], &torques, &force.as_slice()[..np]].concat();
+                compare("β̈, Γ, F", gait, &numeric, &generated[np..]);
+            }
+        }
+    }
+}
+
+#[test]
+fn impact_agrees() {
+    for gait in gaits() {
+        let d = gait.description();
+        let (np, n) = (d.positions(), d.positions() + d.orientations());
+        for (q, qd, _) in states(gait) {
+            for landing in 0..2 {
+                let numeric = impact(d, landing, &q, &qd).unwrap();
+                let generated = filled(n + np, |o| gait.impact(landing, &q, &numeric.before, o));
+                // The velocities before are those with the stance foot at rest.
+                let before = filled(np, |o| gait.platform_velocity(1 - landing, &q, &qd, o));
+                compare("Ẋ⁻", gait, &numeric.before[..np], &before);
+                compare("Ẋ⁺, I", gait, &[&numeric.after[..], &numeric.impulse.as_slice()[..np]].concat(), &generated);
+            }
+        }
+    }
+}

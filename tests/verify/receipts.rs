@@ -1,0 +1,186 @@
+//! What a receipt says, and that it catches what is wrong.
+
+use crate::motions::{closed_trot, gaits, stepping};
+use piaffe::gaits::{curvet::Curvet, trot::Trot};
+use piaffe::model::{Description, Gait};
+use piaffe::verify::{Finding, Receipt, VerifyError, sample, verify};
+
+const GRID: usize = 2001;
+
+/// Every constraint without room to spare, by name.
+fn names(receipt: &Receipt) -> Vec<&str> {
+    receipt.active.iter().map(|f| f.constraint.as_str()).collect()
+}
+
+fn found<'r>(receipt: &'r Receipt, name: &str) -> &'r Finding {
+    receipt.active.iter().find(|f| f.constraint == name).unwrap_or_else(|| panic!("`{name}` is not among {:?}", names(receipt)))
+}
+
+#[test]
+fn costs_agree_with_a_brute_force_sum() {
+    for gait in gaits() {
+        let d = gait.description();
+        let motion = stepping(d);
+        let receipt = verify(d, &motion, 0.4, GRID).unwrap();
+        let points = 40_001;
+        let samples = sample(d, &motion, points).unwrap();
+        let (mut torque, mut energy, mut travel, mut time) = (0.0, 0.0, 0.0, 0.0);
+        for half_step in samples.chunks_exact(points) {
+            travel += half_step[points - 1].platform[0] - half_step[0].platform[0];
+            time += half_step[points - 1].t;
+            for pair in half_step.windows(2) {
+                for s in pair {
+                    let h = 0.5 * (pair[1].t - pair[0].t);
+                    torque += h * s.torques.iter().map(|x| x * x).sum::<f64>();
+                    energy += h * s.torques.iter().zip(&s.qd).map(|(x, rate)| (x * rate).abs()).sum::<f64>();
+                }
+            }
+        }
+        let near = |found: f64, expected: f64, tolerance: f64| {
+            assert!((found / expected - 1.0).abs() < tolerance, "{}: {found} instead of {expected}", d.gait);
+        };
+        near(receipt.costs.torque, torque / travel, 1e-8);
+        near(receipt.costs.energy, energy / travel, 1e-6);
+        near(receipt.step_length, travel, 1e-12);
+        near(receipt.speed, travel / time, 1e-12);
+        // A grid a hundred times as coarse changes little.
+        let coarse = verify(d, &motion, 0.4, 201).unwrap();
+        near(coarse.costs.torque, receipt.costs.torque, 1e-8);
+        near(coarse.costs.energy, receipt.costs.energy, 1e-5);
+    }
+}
+
+#[test]
+fn a_cycle_closes_and_a_changed_rate_opens_it() {
+    let d = Trot.description();
+    let motion = closed_trot();
+    let speed = verify(d, &motion, 0.3, GRID).unwrap().speed;
+    let receipt = verify(d, &motion, speed, GRID).unwrap();
+    assert!(receipt.cycle_error < 1e-9, "cycle error {:e}", receipt.cycle_error);
+    assert!(receipt.step_length > 0.0 && receipt.costs.energy > 0.0);
+
+    for k in 0..3 {
+        let mut broken = motion.clone();
+        broken.half_steps[0].qd_initial[k] += 1e-3;
+        let error = verify(d, &broken, speed, GRID).unwrap().cycle_error;
+        assert!(error > 1e-4, "rate {k}: cycle error {error:e}");
+    }
+    let mut broken = motion.clone();
+    broken.half_steps[0].q_initial[1] += 1e-4;
+    assert!(verify(d, &broken, speed, GRID).unwrap().cycle_error >= 0.99e-4);
+    let mut broken = motion.clone();
+    broken.half_steps[0].beta_initial += 1e-4;
+    assert!(verify(d, &broken, speed, GRID).unwrap().cycle_error >= 0.99e-4);
+    let mut broken = motion;
+    broken.half_steps[0].duration += 1e-3;
+    assert!(verify(d, &broken, speed, GRID).unwrap().cycle_error > 1e-5);
+}
+
+/// The description with one thing changed.
+fn changed(gait: &dyn Gait, change: impl FnOnce(&mut Description)) -> Description {
+    let mut d = gait.description().clone();
+    change(&mut d);
+    d
+}
+
+#[test]
+fn limits_are_judged_at_their_place() {
+    let d = Trot.description();
+    let motion = closed_trot();
+    let base = verify(d, &motion, 0.3, GRID).unwrap();
+
+    // A weaker actuator: just below and just above what the motion takes.
+    for (factor, broken) in [(0.99, true), (1.01, false)] {
+        let weak = changed(&Trot, |d| {
+            let mut joints = d.joints.to_vec();
+            joints[1].max_torque = factor * base.peaks[1].torque;
+            d.joints = Box::leak(joints.into_boxed_slice());
+        });
+        let receipt = verify(&weak, &motion, base.speed, GRID).unwrap();
+        assert_eq!(names(&receipt).contains(&"torque of knee1"), broken);
+        if broken {
+            let finding = found(&receipt, "torque of knee1");
+            assert!((finding.margin - (1.0 - 1.0 / factor)).abs() < 1e-12);
+            assert!((0.0..=motion.half_steps[0].duration).contains(&finding.time));
+        }
+    }
+
+    let slippery = changed(&Trot, |d| d.limits.friction = 1e-3);
+    let receipt = verify(&slippery, &motion, base.speed, GRID).unwrap();
+    assert!(found(&receipt, "friction").margin < 0.0);
+    assert!(found(&receipt, "friction of the impulse").margin < 0.0);
+
+    let light = changed(&Trot, |d| d.limits.min_vertical_force = 10.0 * d.total_mass() * d.gravity);
+    let receipt = verify(&light, &motion, base.speed, GRID).unwrap();
+    assert_eq!(receipt.worst.as_ref().map(|f| f.constraint.as_str()), Some("vertical force"));
+    assert_eq!(receipt.worst.as_ref().map(|f| -f.margin), Some(receipt.max_violation));
+
+    let high = changed(&Trot, |d| d.limits.swing_clearance = 0.1);
+    assert!(found(&verify(&high, &motion, base.speed, GRID).unwrap(), "swing clearance").margin < -0.1);
+
+    let hasty = changed(&Trot, |d| d.limits.half_step_duration = [1.0, 2.0]);
+    assert!(found(&verify(&hasty, &motion, base.speed, GRID).unwrap(), "shortest half step").margin < -0.5);
+
+    let stiff = changed(&Trot, |d| {
+        let mut joints = d.joints.to_vec();
+        joints[3].range = [-0.5, -0.4];
+        d.joints = Box::leak(joints.into_boxed_slice());
+    });
+    assert!(found(&verify(&stiff, &motion, base.speed, GRID).unwrap(), "range of knee2 (lower stop)").margin < 0.0);
+
+    let slow = verify(d, &motion, base.speed + 0.5, GRID).unwrap();
+    assert!(slow.max_violation >= 0.5 - 1e-9, "mean speed: {:?}", slow.worst);
+    assert!(!names(&slow).contains(&"mean speed"), "an equality is not an active inequality");
+}
+
+#[test]
+fn a_foot_above_the_ground_at_the_end_is_found() {
+    let d = Trot.description();
+    let mut motion = closed_trot();
+    motion.half_steps[0].q_final[2] -= 0.3;
+    let receipt = verify(d, &motion, 0.3, GRID).unwrap();
+    assert!(receipt.max_violation > 0.01 && receipt.cycle_error > 0.1);
+}
+
+#[test]
+fn every_half_step_has_its_findings() {
+    let d = changed(&Curvet, |d| d.limits.min_vertical_force = 1e4);
+    let receipt = verify(&d, &stepping(&d), 0.3, GRID).unwrap();
+    let of = |half_step| receipt.active.iter().filter(|f| f.constraint == "vertical force" && f.half_step == half_step).count();
+    assert_eq!((of(1), of(2)), (1, 1));
+    assert_eq!(receipt.peaks.len(), 4);
+    assert!(receipt.peaks.iter().all(|p| p.torque > 0.0 && p.speed > 0.0 && p.envelope_margin < 1.0));
+}
+
+#[test]
+fn receipts_are_the_same_bits_and_survive_json() {
+    for gait in gaits() {
+        let d = gait.description();
+        let motion = stepping(d);
+        let receipt = verify(d, &motion, 0.3, GRID).unwrap();
+        assert_eq!(receipt, verify(d, &motion, 0.3, GRID).unwrap());
+        let text = serde_json::to_string(&receipt).unwrap();
+        assert_eq!(receipt, serde_json::from_str::<Receipt>(&text).unwrap());
+    }
+}
+
+#[test]
+fn what_cannot_be_verified_is_refused_with_a_reason() {
+    let d = Trot.description();
+    let good = closed_trot();
+    let refused = |change: &dyn Fn(&mut piaffe::motion::HalfStep)| {
+        let mut motion = good.clone();
+        change(&mut motion.half_steps[0]);
+        verify(d, &motion, 0.3, GRID).unwrap_err()
+    };
+    assert!(matches!(refused(&|h| h.duration = 0.0), VerifyError::Duration { half_step: 1, .. }));
+    assert!(matches!(refused(&|h| h.duration = f64::NAN), VerifyError::Duration { .. }));
+    assert!(matches!(refused(&|h| h.q_interior[0].truncate(1)), VerifyError::Length { expected: 3, found: 1, .. }));
+    assert!(matches!(refused(&|h| h.qd_final[0] = f64::INFINITY), VerifyError::NotFinite { .. }));
+    assert!(matches!(refused(&|h| h.betad_initial = 1e9), VerifyError::Blowup { .. } | VerifyError::Steps { .. } | VerifyError::Singular { .. }));
+    assert_eq!(verify(d, &good, f64::NAN, GRID).unwrap_err().to_string(), "the speed must be finite, not NaN m/s");
+    assert_eq!(verify(d, &good, 0.3, 2), Err(VerifyError::Grid(2)));
+    let two = piaffe::motion::Motion { half_steps: [&good.half_steps[..], &good.half_steps[..]].concat() };
+    let message = verify(d, &two, 0.3, GRID).unwrap_err().to_string();
+    assert_eq!(message, "the trot is defined by 1 half step(s), the motion has 2");
+}
