@@ -53,30 +53,36 @@ impl Quantities {
     }
 }
 
-/// The quantities at all nodes of a half step.
-#[derive(Clone, Debug)]
-pub struct Instants {
-    pub quantities: Quantities,
-    layout: Layout,
-    /// One row of quantities per node.
-    pub values: Vec<f64>,
-    /// Per node and quantity a row of derivatives in the local parameters.
-    gradients: Vec<f64>,
-    /// q̈, p and swing foot per node, for reports.
-    pub states: Vec<State>,
-    /// Kernel results per node, kept between evaluation and differentiation.
-    inverse: Vec<Vec<f64>>,
-    placement: Vec<Vec<f64>>,
-    swing: [Vec<f64>; 2],
-    prescribed: Prescribed,
-    betadd_p: Vec<f64>,
-}
-
-/// The configuration at one node.
+/// The state at one node.
 #[derive(Clone, Debug, Default)]
 pub struct State {
     pub q: Vec<f64>,
     pub qd: Vec<f64>,
+    pub qdd: Vec<f64>,
+}
+
+/// The quantities at all nodes of a half step: values, and derivatives of the last linearization.
+#[derive(Clone, Debug)]
+pub struct Instants {
+    pub quantities: Quantities,
+    layout: Layout,
+    nodes: usize,
+    /// One row of quantities per node.
+    pub values: Vec<f64>,
+    pub states: Vec<State>,
+    /// Results of the `inverse_jacobian`, `placement` and `swing_velocity` kernels, a row per node.
+    inverse: Vec<f64>,
+    placement: Vec<f64>,
+    swing: [Vec<f64>; 2],
+    prescribed: Prescribed,
+    /// Per node and quantity a row of derivatives in the local parameters.
+    gradients: Vec<f64>,
+    /// ∂β̈/∂parameters, a row per node.
+    pub betadd_p: Vec<f64>,
+    /// Per node and basis parameter the derivatives of Q, Q̇, Q̈.
+    pub basis: Vec<[f64; 3]>,
+    /// Per node and prescribed coordinate the derivatives of Q, Q̇, Q̈ in T.
+    pub by_duration: Vec<[f64; 3]>,
 }
 
 impl Instants {
@@ -85,42 +91,70 @@ impl Instants {
         let layout = Layout::new(description, &mesh.basis);
         let (nq, nj, nc) = (description.orientations(), description.joints(), description.positions());
         let n = mesh.nodes.len();
-        let rows = nj + nc + 1;
+        let z = || vec![0.0; nq];
         Instants {
             quantities,
             layout,
+            nodes: n,
             values: vec![0.0; n * quantities.len()],
-            gradients: vec![0.0; n * quantities.len() * layout.len()],
-            states: vec![State { q: vec![0.0; nq], qd: vec![0.0; nq] }; n],
-            inverse: vec![vec![0.0; 1 + nj + nc + rows * 3 * nq]; n],
-            placement: vec![vec![0.0; 2 * nc + 2 * nc * nq]; n],
+            states: vec![State { q: z(), qd: z(), qdd: z() }; n],
+            inverse: vec![0.0; n * inverse_length(nq, nj, nc)],
+            placement: vec![0.0; n * placement_length(nq, nc)],
             swing: [vec![0.0; nc + nc * 2 * nq], vec![0.0; nc + nc * 2 * nq]],
             prescribed: Prescribed::new(layout.prescribed),
-            betadd_p: vec![0.0; layout.len()],
+            gradients: vec![0.0; n * quantities.len() * layout.len()],
+            betadd_p: vec![0.0; n * layout.len()],
+            basis: vec![[0.0; 3]; n * layout.per_joint],
+            by_duration: vec![[0.0; 3]; n * layout.prescribed],
         }
     }
 
     /// Value of a quantity at a node.
+    #[inline]
     pub fn value(&self, node: usize, quantity: usize) -> f64 {
         self.values[node * self.quantities.len() + quantity]
     }
 
+    /// All values of a node.
+    #[inline]
+    pub fn row(&self, node: usize) -> &[f64] {
+        &self.values[node * self.quantities.len()..][..self.quantities.len()]
+    }
+
     /// Gradient of a quantity at a node in the local parameters.
+    #[inline]
     pub fn gradient(&self, node: usize, quantity: usize) -> &[f64] {
         let np = self.layout.len();
         &self.gradients[(node * self.quantities.len() + quantity) * np..][..np]
     }
 
-    /// Position of the platform's mass centre from the stance foot at a node, m.
-    pub fn platform(&self, description: &Description, node: usize) -> &[f64] {
-        &self.placement[node][..description.positions()]
+    /// Gradients of all quantities of a node, row after row.
+    #[inline]
+    pub fn gradients(&self, node: usize) -> &[f64] {
+        let size = self.quantities.len() * self.layout.len();
+        &self.gradients[node * size..][..size]
     }
 
-    /// Gradient of the platform's x at a node, in the local parameters.
-    pub fn platform_x_gradient(&self, description: &Description, mesh: &Mesh, stance: &Stance, parameters: &[f64], node: usize, out: &mut [f64]) {
-        let (nq, nc) = (description.orientations(), description.positions());
-        let row = &self.placement[node][2 * nc..2 * nc + nq];
-        self.chain(description, mesh, stance, parameters, node, &[(row, Order::Value)], out);
+    /// Position of the platform's mass centre from the stance foot at a node, m.
+    pub fn platform(&self, description: &Description, node: usize) -> &[f64] {
+        &self.placement(description, node)[..description.positions()]
+    }
+
+    /// Result of the `placement` kernel at a node.
+    pub fn placement(&self, d: &Description, node: usize) -> &[f64] {
+        let length = placement_length(d.orientations(), d.positions());
+        &self.placement[node * length..][..length]
+    }
+
+    /// Jacobian of the `inverse_jacobian` kernel at a node: rows Γ, F, balance; columns q, q̇, q̈.
+    pub fn jacobian(&self, d: &Description, node: usize) -> &[f64] {
+        let (nq, nj, nc) = (d.orientations(), d.joints(), d.positions());
+        &self.inverse[node * inverse_length(nq, nj, nc)..][1 + nj + nc..][..(nj + nc + 1) * 3 * nq]
+    }
+
+    /// Result of the `swing_velocity` kernel at the first (0) or last (1) collocation node.
+    pub fn swing_velocity(&self, end: usize) -> &[f64] {
+        &self.swing[end]
     }
 
     /// Evaluates all quantities; `stance` must have been integrated.
@@ -130,148 +164,194 @@ impl Instants {
         let t = parameters[self.layout.duration()];
         let last = mesh.collocation() - 1;
         let y = self.quantities;
-        for (k, (s, jet)) in mesh.nodes.iter().enumerate() {
+        let inverse_rows = self.inverse.chunks_mut(inverse_length(nq, nj, nc));
+        let placement_rows = self.placement.chunks_mut(placement_length(nq, nc));
+        let value_rows = self.values.chunks_mut(y.len());
+        let rows = self.states.iter_mut().zip(inverse_rows).zip(placement_rows).zip(value_rows);
+        for (k, (((state, inverse), placement), values)) in rows.enumerate() {
+            let (s, jet) = &mesh.nodes[k];
             self.prescribed.evaluate(&self.layout, &mesh.basis, jet, parameters);
-            let state = &mut self.states[k];
             for j in 0..self.layout.prescribed {
-                state.q[d.prescribed_index(j)] = self.prescribed.q[j];
-                state.qd[d.prescribed_index(j)] = self.prescribed.qd[j];
+                let index = d.prescribed_index(j);
+                state.q[index] = self.prescribed.q[j];
+                state.qd[index] = self.prescribed.qd[j];
+                state.qdd[index] = self.prescribed.qdd[j];
             }
             state.q[d.unactuated] = stance.beta[k];
             state.qd[d.unactuated] = stance.betad[k];
-            gait.inverse_jacobian(leg, &state.q, &state.qd, &self.prescribed.qdd, &mut self.inverse[k]);
-            gait.placement(leg, &state.q, &mut self.placement[k]);
-            let values = &mut self.values[k * y.len()..(k + 1) * y.len()];
-            values[..nj + nc].copy_from_slice(&self.inverse[k][1..1 + nj + nc]);
+            gait.inverse_jacobian(leg, &state.q, &state.qd, &self.prescribed.qdd, inverse);
+            state.qdd[d.unactuated] = inverse[0];
+            gait.placement(leg, &state.q, placement);
+            values[..nj + nc].copy_from_slice(&inverse[1..1 + nj + nc]);
             values[y.angle(0)..y.angle(0) + nj].copy_from_slice(&state.q[..nj]);
             values[y.rate(0)..y.rate(0) + nj].copy_from_slice(&state.qd[..nj]);
             values[y.clearance()] = if k == 0 || k == last {
                 let end = usize::from(k == last);
                 gait.swing_velocity(leg, &state.q, &state.qd, &mut self.swing[end]);
-                let direction = if k == 0 { 1.0 } else { -1.0 };
-                direction * self.swing[end][1] * t / 4.0
+                direction(end) * self.swing[end][1] * t
             } else {
-                self.placement[k][nc + 1] / (4.0 * s * (1.0 - s))
+                placement[nc + 1] / (4.0 * s * (1.0 - s))
             };
-            debug_assert_eq!(state.q.len(), nq);
         }
     }
 
     /// Gradients of all quantities; `stance` must have been differentiated.
-    pub fn differentiate(&mut self, description: &Description, mesh: &Mesh, stance: &Stance, parameters: &[f64]) {
-        let d = description;
+    pub fn differentiate(&mut self, d: &Description, mesh: &Mesh, stance: &Stance, parameters: &[f64]) {
         let (nq, nj, nc, np) = (d.orientations(), d.joints(), d.positions(), self.layout.len());
-        let y = self.quantities;
-        let t = parameters[self.layout.duration()];
+        let (y, layout) = (self.quantities, self.layout);
+        let t = parameters[layout.duration()];
         let last = mesh.collocation() - 1;
         let mut gradients = std::mem::take(&mut self.gradients);
-        for k in 0..mesh.nodes.len() {
-            let inverse = &self.inverse[k];
-            let row = |r: usize| &inverse[1 + nj + nc + r * 3 * nq..][..3 * nq];
-            let block = &mut gradients[k * y.len() * np..(k + 1) * y.len() * np];
-            // β̈ follows from the balance (eq. 10): its row tells how.
-            let balance = row(nj + nc);
-            let f1 = balance[2 * nq + d.unactuated];
-            let mut betadd_p = std::mem::take(&mut self.betadd_p);
-            let parts = [(&balance[..nq], Order::Value), (&balance[nq..2 * nq], Order::Rate), (&balance[2 * nq..], Order::Acceleration(None))];
-            self.chain(d, mesh, stance, parameters, k, &parts, &mut betadd_p);
-            for value in &mut betadd_p {
-                *value /= -f1;
-            }
-            for r in 0..nj + nc {
-                let row = row(r);
-                let parts = [(&row[..nq], Order::Value), (&row[nq..2 * nq], Order::Rate), (&row[2 * nq..], Order::Acceleration(Some(&betadd_p)))];
-                self.chain(d, mesh, stance, parameters, k, &parts, &mut block[r * np..(r + 1) * np]);
-            }
-            self.betadd_p = betadd_p;
-            let unit = |j: usize| {
-                let mut row = [0.0; 32];
-                row[j] = 1.0;
-                row
+        let mut betadd = std::mem::take(&mut self.betadd_p);
+        for k in 0..self.nodes {
+            self.tabulate(mesh, parameters, k);
+            let chain = Chain::new(self, d, stance, k);
+            let jacobian = self.jacobian(d, k);
+            let row = |r: usize| {
+                let row = &jacobian[r * 3 * nq..][..3 * nq];
+                [&row[..nq], &row[nq..2 * nq], &row[2 * nq..]]
             };
-            for j in 0..nj {
-                let row = unit(j);
-                let at = |quantity: usize| quantity * np..(quantity + 1) * np;
-                self.chain(d, mesh, stance, parameters, k, &[(&row[..nq], Order::Value)], &mut block[at(y.angle(j))]);
-                self.chain(d, mesh, stance, parameters, k, &[(&row[..nq], Order::Rate)], &mut block[at(y.rate(j))]);
+            // β̈ follows from the balance (eq. 10): its row tells how.
+            let betadd_p = &mut betadd[k * np..(k + 1) * np];
+            let balance = row(nj + nc);
+            chain.row(balance, None, betadd_p);
+            let over_f1 = -1.0 / balance[2][d.unactuated];
+            betadd_p.iter_mut().for_each(|x| *x *= over_f1);
+
+            let block = &mut gradients[k * y.len() * np..(k + 1) * y.len() * np];
+            for (r, out) in block.chunks_mut(np).take(nj + nc).enumerate() {
+                chain.row(row(r), Some(betadd_p), out);
             }
-            let out = &mut block[y.clearance() * np..(y.clearance() + 1) * np];
+            for (j, out) in block[y.angle(0) * np..].chunks_mut(np).take(nj).enumerate() {
+                chain.coordinate(j, 0, out);
+            }
+            for (j, out) in block[y.rate(0) * np..].chunks_mut(np).take(nj).enumerate() {
+                chain.coordinate(j, 1, out);
+            }
+            let out = &mut block[y.clearance() * np..];
             if k == 0 || k == last {
-                let swing = &self.swing[usize::from(k == last)];
-                let row = &swing[nc + 2 * nq..nc + 4 * nq];
-                self.chain(d, mesh, stance, parameters, k, &[(&row[..nq], Order::Value), (&row[nq..], Order::Rate)], out);
-                let direction = if k == 0 { 0.25 } else { -0.25 };
-                for value in out.iter_mut() {
-                    *value *= direction * t;
-                }
-                out[self.layout.duration()] += direction * swing[1];
+                let end = usize::from(k == last);
+                let swing = &self.swing[end];
+                let row = &swing[nc + 2 * nq..][..2 * nq];
+                chain.row([&row[..nq], &row[nq..], &[]], None, out);
+                out.iter_mut().for_each(|x| *x *= direction(end) * t);
+                out[layout.duration()] += direction(end) * swing[1];
             } else {
                 let s = mesh.nodes[k].0;
-                let row = &self.placement[k][2 * nc + nc * nq + nq..][..nq];
-                self.chain(d, mesh, stance, parameters, k, &[(row, Order::Value)], out);
-                for value in out.iter_mut() {
-                    *value /= 4.0 * s * (1.0 - s);
-                }
+                let row = &self.placement(d, k)[2 * nc + nc * nq + nq..][..nq];
+                chain.row([row, &[], &[]], None, out);
+                out.iter_mut().for_each(|x| *x /= 4.0 * s * (1.0 - s));
             }
         }
         self.gradients = gradients;
+        self.betadd_p = betadd;
     }
 
-    /// Chain rule from rows of partial derivatives in q, q̇ or q̈ to the local parameters.
-    fn chain(&self, d: &Description, mesh: &Mesh, stance: &Stance, parameters: &[f64], node: usize, parts: &[(&[f64], Order)], out: &mut [f64]) {
-        let layout = &self.layout;
-        let (jet, t, np) = (&mesh.nodes[node].1, parameters[layout.duration()], layout.len());
+    /// Derivatives of Q, Q̇, Q̈ at node `k`, for the duration at hand.
+    fn tabulate(&mut self, mesh: &Mesh, parameters: &[f64], k: usize) {
+        let layout = self.layout;
+        let t = parameters[layout.duration()];
+        let jet = &mesh.nodes[k].1;
+        for i in 0..layout.per_joint {
+            self.basis[k * layout.per_joint + i] = basis_derivatives(&mesh.basis, jet, t, i);
+        }
+        self.prescribed.evaluate(&layout, &mesh.basis, jet, parameters);
+        for j in 0..layout.prescribed {
+            let p = &self.prescribed;
+            self.by_duration[k * layout.prescribed + j] = [p.q_t[j], p.qd_t[j], p.qdd_t[j]];
+        }
+    }
+
+    /// Gradient of the platform's x at a node, in the local parameters; after `differentiate`.
+    pub fn platform_x_gradient(&self, d: &Description, stance: &Stance, node: usize, out: &mut [f64]) {
+        let (nq, nc) = (d.orientations(), d.positions());
+        let row = &self.placement(d, node)[2 * nc..][..nq];
+        Chain::new(self, d, stance, node).row([row, &[], &[]], None, out);
+    }
+}
+
+/// Sign and factor that turn the swing foot's vertical velocity into clearance: up first, down last.
+pub fn direction(end: usize) -> f64 {
+    if end == 0 { 0.25 } else { -0.25 }
+}
+
+fn inverse_length(nq: usize, nj: usize, nc: usize) -> usize {
+    1 + nj + nc + (nj + nc + 1) * 3 * nq
+}
+
+fn placement_length(nq: usize, nc: usize) -> usize {
+    2 * nc + 2 * nc * nq
+}
+
+/// The chain rule at one node: from partial derivatives in q, q̇, q̈ to the local parameters.
+struct Chain<'a> {
+    d: &'a Description,
+    layout: Layout,
+    basis: &'a [[f64; 3]],
+    by_duration: &'a [[f64; 3]],
+    beta_p: &'a [f64],
+    betad_p: &'a [f64],
+}
+
+impl<'a> Chain<'a> {
+    fn new(instants: &'a Instants, d: &'a Description, stance: &'a Stance, node: usize) -> Chain<'a> {
+        let layout = instants.layout;
+        let np = layout.len();
+        Chain {
+            d,
+            layout,
+            basis: &instants.basis[node * layout.per_joint..][..layout.per_joint],
+            by_duration: &instants.by_duration[node * layout.prescribed..][..layout.prescribed],
+            beta_p: &stance.beta_p[node * np..][..np],
+            betad_p: &stance.betad_p[node * np..][..np],
+        }
+    }
+
+    /// `parts` are the partial derivatives in q, q̇ and q̈ (each may be empty). Without `betadd_p` the
+    /// derivative in β̈ is left out.
+    fn row(&self, parts: [&[f64]; 3], betadd_p: Option<&[f64]>, out: &mut [f64]) {
+        let (layout, beta) = (self.layout, self.d.unactuated);
+        let at = |part: usize, index: usize| parts[part].get(index).copied().unwrap_or(0.0);
+        let mut by_duration = 0.0;
+        for (j, out) in out.chunks_mut(layout.per_joint).take(layout.prescribed).enumerate() {
+            let index = self.d.prescribed_index(j);
+            let [a, b, c] = [at(0, index), at(1, index), at(2, index)];
+            for (o, basis) in out.iter_mut().zip(self.basis) {
+                *o = a * basis[0] + b * basis[1] + c * basis[2];
+            }
+            let t = self.by_duration[j];
+            by_duration += a * t[0] + b * t[1] + c * t[2];
+        }
+        out[layout.duration()] = by_duration;
+        out[layout.beta()] = 0.0;
+        out[layout.sigma()] = 0.0;
+        let [a, b, c] = [at(0, beta), at(1, beta), at(2, beta)];
+        match betadd_p {
+            Some(betadd_p) => {
+                for (((o, x), y), z) in out.iter_mut().zip(self.beta_p).zip(self.betad_p).zip(betadd_p) {
+                    *o += a * x + b * y + c * z;
+                }
+            }
+            None => {
+                for ((o, x), y) in out.iter_mut().zip(self.beta_p).zip(self.betad_p) {
+                    *o += a * x + b * y;
+                }
+            }
+        }
+    }
+
+    /// Gradient of coordinate `index` of q (order 0) or of q̇ (order 1).
+    fn coordinate(&self, index: usize, order: usize, out: &mut [f64]) {
+        let layout = self.layout;
+        if index == self.d.unactuated {
+            out.copy_from_slice(if order == 0 { self.beta_p } else { self.betad_p });
+            return;
+        }
+        let j = if index < self.d.unactuated { index } else { index - 1 };
         out.fill(0.0);
-        for (row, order) in parts {
-            for j in 0..layout.prescribed {
-                let partial = row[d.prescribed_index(j)];
-                if partial == 0.0 {
-                    continue;
-                }
-                let mut by_duration = 0.0;
-                for i in 0..layout.per_joint {
-                    let [value, rate, acceleration] = basis_derivatives(&mesh.basis, jet, t, i);
-                    out[layout.joint(j, i)] += partial * order.pick(value, rate, acceleration);
-                    // ∂/∂T of basis·p: Q grows with the rates, Q̇ and Q̈ shrink with 1/T, 1/T².
-                    let p = parameters[layout.joint(j, i)];
-                    let is_rate = mesh.basis.is_rate(i);
-                    let exponent = match order {
-                        Order::Value => f64::from(u8::from(is_rate)),
-                        Order::Rate => f64::from(u8::from(is_rate)) - 1.0,
-                        Order::Acceleration(_) => f64::from(u8::from(is_rate)) - 2.0,
-                    };
-                    by_duration += exponent * order.pick(value, rate, acceleration) * p / t;
-                }
-                out[layout.duration()] += partial * by_duration;
-            }
-            let partial = row[d.unactuated];
-            let sensitivity = match order {
-                Order::Value => &stance.beta_p[node * np..(node + 1) * np],
-                Order::Rate => &stance.betad_p[node * np..(node + 1) * np],
-                Order::Acceleration(Some(betadd_p)) => betadd_p,
-                Order::Acceleration(None) => continue,
-            };
-            for (o, s) in out.iter_mut().zip(sensitivity) {
-                *o += partial * s;
-            }
+        for (o, basis) in out[layout.joint(j, 0)..].iter_mut().zip(self.basis) {
+            *o = basis[order];
         }
-    }
-}
-
-/// Which time derivative of q a row of partial derivatives belongs to.
-enum Order<'a> {
-    Value,
-    Rate,
-    /// With β̈'s sensitivities, or without (as the balance that determines them needs).
-    Acceleration(Option<&'a [f64]>),
-}
-
-impl Order<'_> {
-    fn pick(&self, value: f64, rate: f64, acceleration: f64) -> f64 {
-        match self {
-            Order::Value => value,
-            Order::Rate => rate,
-            Order::Acceleration(_) => acceleration,
-        }
+        out[layout.duration()] = self.by_duration[j][order];
     }
 }

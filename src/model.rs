@@ -163,6 +163,12 @@ impl Description {
         inner.map(|b| norm(&b.offset)).sum::<f64>() + norm(&leg.foot)
     }
 
+    /// The coordinates of q along which no torque does work: the whole robot turning about the stance foot.
+    pub fn free_direction(&self) -> impl Iterator<Item = usize> + '_ {
+        let rotates = self.rotation != Rotation::None;
+        (0..self.orientations()).filter(move |k| if rotates { *k == self.joints.len() } else { self.hangs_on_platform(*k) })
+    }
+
     /// Whether the joint connects a leg to the platform.
     pub fn hangs_on_platform(&self, joint: usize) -> bool {
         self.bodies.iter().any(|b| b.parent == Some(0) && b.coordinate == Some(joint))
@@ -180,6 +186,7 @@ impl Description {
 }
 
 /// Generated dynamics of one gait. `leg` is 0 or 1: the leg in support, or the leg named.
+#[allow(clippy::too_many_arguments)]
 pub trait Gait: Sync {
     fn description(&self) -> &'static Description;
 
@@ -232,6 +239,10 @@ pub trait Gait: Sync {
     fn impact(&self, leg: usize, q: &[f64], xd: &[f64], out: &mut [f64]);
     /// Impact on the foot of `leg` after support on the other: q̇⁺, impulse, leaving, landing, Jacobian in (q, q̇⁻).
     fn touchdown(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]);
+    /// Gradient and second derivatives (q·q, q·q̇, q·q̈, q̇·q̇) of the weighted sum of an instant's outputs.
+    fn curvature(&self, leg: usize, q: &[f64], qd: &[f64], qdd: &[f64], n: &[f64], phi: &[f64], others: &[f64], out: &mut [f64]);
+    /// Second derivatives (q·q, q·q̇⁻, q·q̇⁺) of a touchdown's weighted results.
+    fn touchdown_curvature(&self, leg: usize, q: &[f64], qd: &[f64], xi: &[f64], outputs: &[f64], out: &mut [f64]);
     /// Both feet stay (eq. 11): Ẋ⁺, impulses on foot 1 and 2, pivots, scale.
     fn impact_both(&self, q: &[f64], xd: &[f64], out: &mut [f64]);
 }

@@ -31,6 +31,8 @@ pub struct Mesh {
     pub basis: Basis,
     /// s of every node and the basis there: collocation nodes in order, then further instants.
     pub nodes: Vec<(f64, Jet)>,
+    /// Quadrature weight of each collocation node on [0, 1].
+    pub weights: Vec<f64>,
 }
 
 impl Mesh {
@@ -44,7 +46,13 @@ impl Mesh {
                 nodes.push((s, basis.jet(s)));
             }
         }
-        Mesh { elements, lobatto, basis, nodes }
+        let mut weights = vec![0.0; nodes.len()];
+        for e in 0..elements {
+            for (j, w) in lobatto.weights.iter().enumerate() {
+                weights[e * (NODES - 1) + j] += w / elements as f64;
+            }
+        }
+        Mesh { elements, lobatto, basis, nodes, weights }
     }
 
     /// Number of collocation nodes.
@@ -58,17 +66,6 @@ impl Mesh {
         for &s in instants {
             self.nodes.push((s, self.basis.jet(s)));
         }
-    }
-
-    /// Quadrature weight of each collocation node on [0, 1].
-    pub fn weights(&self) -> Vec<f64> {
-        let mut weights = vec![0.0; self.collocation()];
-        for e in 0..self.elements {
-            for (j, w) in self.lobatto.weights.iter().enumerate() {
-                weights[e * (NODES - 1) + j] += w / self.elements as f64;
-            }
-        }
-        weights
     }
 }
 
@@ -258,9 +255,29 @@ impl Stance {
     }
 
     /// ∂β̇/∂β, ∂β̇/∂σ and ∂σ̇/∂β at node `k`.
-    fn partials(&self, k: usize) -> (f64, f64, f64) {
+    pub fn partials(&self, k: usize) -> (f64, f64, f64) {
         let [f1, _, _, f1_b, f2_b, moment_b] = self.late[k];
         (-(f2_b + self.betad[k] * f1_b) / f1, 1.0 / f1, moment_b)
+    }
+
+    /// f1 at node `k`, kg·m².
+    pub fn inertia(&self, k: usize) -> f64 {
+        self.late[k][0]
+    }
+
+    /// ∂σ̇/∂parameters at node `k`.
+    pub fn moment_gradient(&self, k: usize, t: f64, out: &mut [f64]) {
+        let np = self.layout.len();
+        for (o, m) in out.iter_mut().zip(&self.moment_p[k * np..]) {
+            *o = m / t;
+        }
+        out[self.layout.duration()] -= self.sigmad[k] / t;
+    }
+
+    /// The linearized collocation equations of element `e`.
+    pub fn system(&self, mesh: &Mesh, e: usize, t: f64) -> System {
+        let first = e * (NODES - 1);
+        System::new(&mesh.lobatto.integral, t / mesh.elements as f64, |j| self.partials(first + j))
     }
 
     /// Solves the collocation equations of element `e` of length `h` (in time) by Newton's method.
@@ -384,7 +401,7 @@ impl Stance {
         let np = self.layout.len();
         let share = 1.0 / mesh.elements as f64;
         let first = e * M;
-        let system = System::new(a, t * share, |j| self.partials(first + j));
+        let system = self.system(mesh, e, t);
         for p in 0..np {
             let at = |node: usize| node * np + p;
             let mut right = [[0.0; 2]; M];
@@ -410,7 +427,7 @@ impl Stance {
 
     /// (β, σ) at any `s`, by the collocation polynomial.
     pub fn state(&self, mesh: &Mesh, s: f64, t: f64) -> (f64, f64) {
-        let (first, integrals, share) = locate(mesh, s);
+        let (first, integrals, share) = self.locate(mesh, s);
         let (mut beta, mut sigma) = (self.beta[first], self.sigma[first]);
         for (j, w) in integrals.iter().enumerate() {
             beta += t * share * w * self.betad[first + j];
@@ -421,7 +438,7 @@ impl Stance {
 
     /// Sensitivities of β and σ at the further instant `k`.
     fn state_sensitivities(&mut self, mesh: &Mesh, k: usize) {
-        let (first, integrals, share) = locate(mesh, mesh.nodes[k].0);
+        let (first, integrals, share) = self.locate(mesh, mesh.nodes[k].0);
         let np = self.layout.len();
         for p in 0..np {
             let (mut beta, mut sigma) = (self.beta_p[first * np + p], self.sigma_p[first * np + p]);
@@ -433,17 +450,17 @@ impl Stance {
             self.sigma_p[k * np + p] = sigma;
         }
     }
-}
 
-/// Element that contains `s`: its first node, the integrals up to `s`, its share of the interval.
-fn locate(mesh: &Mesh, s: f64) -> (usize, [f64; NODES], f64) {
-    let scaled = s * mesh.elements as f64;
-    let e = (scaled as usize).min(mesh.elements - 1);
-    (e * (NODES - 1), mesh.lobatto.integrals(scaled - e as f64), 1.0 / mesh.elements as f64)
+    /// Element that contains `s`: its first node, the integrals up to `s`, its share of the interval.
+    pub fn locate(&self, mesh: &Mesh, s: f64) -> (usize, [f64; NODES], f64) {
+        let scaled = s * mesh.elements as f64;
+        let e = (scaled as usize).min(mesh.elements - 1);
+        (e * (NODES - 1), mesh.lobatto.integrals(scaled - e as f64), 1.0 / mesh.elements as f64)
+    }
 }
 
 /// The linearized collocation equations of one element, σ eliminated, factored.
-struct System {
+pub struct System {
     h: f64,
     a: [[f64; NODES]; NODES],
     partials: [(f64, f64, f64); NODES],
@@ -494,6 +511,50 @@ impl System {
             sigma[i] = value;
         }
         (beta, sigma)
+    }
+}
+
+impl System {
+    /// η with `systemᵀ η = right`: the adjoint of `solve`.
+    pub fn solve_transposed(&self, right: &[[f64; 2]; NODES - 1]) -> [[f64; 2]; NODES - 1] {
+        const M: usize = NODES - 1;
+        let (h, a) = (self.h, &self.a);
+        // Rows of the transpose: ηβ − h β̇_β Aᵀηβ − h σ̇_β Aᵀησ = rβ and ησ − h β̇_σ Aᵀηβ = rσ.
+        let mut beta = [0.0; M];
+        for j in 0..M {
+            let mut value = right[j][0];
+            for i in 0..M {
+                value += h * a[i + 1][j + 1] * self.partials[j + 1].2 * right[i][1];
+            }
+            beta[j] = value;
+        }
+        substitute_transposed(&self.lu, &self.pivots, &mut beta);
+        let mut eta = [[0.0; 2]; M];
+        for j in 0..M {
+            let mut value = right[j][1];
+            for i in 0..M {
+                value += h * a[i + 1][j + 1] * self.partials[j + 1].1 * beta[i];
+            }
+            eta[j] = [beta[j], value];
+        }
+        eta
+    }
+}
+
+fn substitute_transposed<const M: usize>(lu: &[[f64; M]; M], pivots: &[usize; M], x: &mut [f64; M]) {
+    for i in 0..M {
+        for k in 0..i {
+            x[i] -= lu[k][i] * x[k];
+        }
+        x[i] /= lu[i][i];
+    }
+    for i in (0..M).rev() {
+        for k in i + 1..M {
+            x[i] -= lu[k][i] * x[k];
+        }
+    }
+    for k in (0..M).rev() {
+        x.swap(k, pivots[k]);
     }
 }
 

@@ -83,3 +83,67 @@ fn gradients_agree_with_differences_for_every_gait_and_criterion() {
         }
     }
 }
+
+/// Gradient of the Lagrangian at `theta` with the given multipliers.
+fn lagrangian_gradient(cycle: &mut Cycle, theta: &[f64], lambda: &[f64], mu: &[f64], values: &mut Values) -> Vec<f64> {
+    cycle.evaluate(theta, values).unwrap();
+    cycle.linearize(theta).unwrap();
+    let n = theta.len();
+    let (mut gradient, mut row) = (vec![0.0; n], vec![0.0; n]);
+    cycle.gradient(&mut gradient);
+    for (i, l) in lambda.iter().enumerate() {
+        cycle.equality_row(i, &mut row);
+        gradient.iter_mut().zip(&row).for_each(|(g, r)| *g -= l * r);
+    }
+    for (i, m) in mu.iter().enumerate().filter(|(_, m)| **m != 0.0) {
+        cycle.inequality_row(i, &mut row);
+        gradient.iter_mut().zip(&row).for_each(|(g, r)| *g -= m * r);
+    }
+    gradient
+}
+
+#[test]
+fn the_hessian_of_the_lagrangian_agrees_with_differences_of_its_gradient() {
+    for gait in GAITS {
+        for criterion in Criterion::ALL {
+            let d = gait.description();
+            let mut rng = fastrand::Rng::with_seed(7);
+            let mut cycle = Cycle::new(*gait, criterion, 0.6);
+            cycle.set_instants(&vec![vec![0.013, 0.4437, 0.98]; d.phases()]);
+            let mut values = Values::zeros(cycle.equalities(), cycle.inequalities());
+            let theta = loop {
+                let plan = Plan::random(d, &mut rng);
+                let theta = cycle.theta(&walk(*gait, &plan, 0.6));
+                if cycle.evaluate(&theta, &mut values).is_ok() {
+                    break theta;
+                }
+            };
+            let n = theta.len();
+            let size = values.objective;
+            let lambda: Vec<f64> = (0..cycle.equalities()).map(|_| size * (rng.f64() - 0.5)).collect();
+            let mu: Vec<f64> = (0..cycle.inequalities()).map(|_| if rng.f64() < 0.1 { size * rng.f64() } else { 0.0 }).collect();
+            cycle.linearize(&theta).unwrap();
+            let mut hessian = vec![0.0; n * n];
+            assert!(cycle.hessian(&lambda, &mu, &mut hessian));
+            let largest = hessian.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+            for k in 0..n {
+                let h = 1e-6;
+                let mut moved = theta.clone();
+                moved[k] += h;
+                let plus = lagrangian_gradient(&mut cycle, &moved, &lambda, &mu, &mut values);
+                moved[k] = theta[k] - h;
+                let minus = lagrangian_gradient(&mut cycle, &moved, &lambda, &mu, &mut values);
+                for j in 0..n {
+                    let difference = (plus[j] - minus[j]) / (2.0 * h);
+                    let exact = hessian[j * n + k];
+                    let error = (difference - exact).abs();
+                    assert!(
+                        error <= 1e-5 * largest.min(1e3 * exact.abs().max(1e-3 * largest)),
+                        "{} {criterion:?} ({j}, {k}): exact {exact}, difference {difference}, largest {largest:e}",
+                        d.gait
+                    );
+                }
+            }
+        }
+    }
+}

@@ -24,56 +24,69 @@ impl ImpactConstraints {
         }
     }
 
-    pub fn names(&self) -> Vec<&'static str> {
-        let mut names = vec!["impulse upward", "friction of the impulse", "friction of the impulse", "lift-off of the other foot"];
-        if self.lateral {
-            names.remove(1);
+    pub fn name(&self, i: usize) -> &'static str {
+        match (i, self.lateral) {
+            (0, _) => "impulse upward",
+            (1, _) | (2, false) => "friction of the impulse",
+            _ => "lift-off of the other foot",
         }
-        names
     }
 
-    /// Scaled values from the impulse and the leaving foot's vertical velocity.
-    pub fn values(&self, impulse: &[f64], leaving: f64, out: &mut Vec<f64>) {
-        let mu = self.friction;
-        out.push(impulse[1] / self.unit);
-        if self.lateral {
-            out.push((mu * impulse[1] - impulse[0].hypot_pinned(impulse[2])) / self.unit);
-        } else {
-            out.push((mu * impulse[1] + impulse[0]) / self.unit);
-            out.push((mu * impulse[1] - impulse[0]) / self.unit);
-        }
-        out.push(leaving);
+    /// Number of constraints.
+    pub fn count(&self) -> usize {
+        if self.lateral { 3 } else { 4 }
     }
 
-    /// Partial derivatives of value `i` in (impulse…, leaving).
-    pub fn partials(&self, i: usize, impulse: &[f64]) -> Vec<f64> {
-        let mut row = vec![0.0; self.components + 1];
+    /// Scaled value `i` from (impulse…, leaving velocity).
+    pub fn value(&self, i: usize, y: &[f64]) -> f64 {
         let mu = self.friction;
         match (i, self.lateral) {
-            (0, _) => row[1] = 1.0 / self.unit,
+            (0, _) => y[1] / self.unit,
+            (1, true) => (mu * y[1] - norm(y)) / self.unit,
+            (1, false) => (mu * y[1] + y[0]) / self.unit,
+            (2, false) => (mu * y[1] - y[0]) / self.unit,
+            _ => y[self.components],
+        }
+    }
+
+    /// Calls `add(index in (impulse…, leaving), partial derivative)` for value `i`.
+    pub fn partials(&self, i: usize, y: &[f64], mut add: impl FnMut(usize, f64)) {
+        let mu = self.friction / self.unit;
+        match (i, self.lateral) {
+            (0, _) => add(1, 1.0 / self.unit),
             (1, true) => {
-                let norm = impulse[0].hypot_pinned(impulse[2]).max(1e-12);
-                row[0] = -impulse[0] / norm / self.unit;
-                row[2] = -impulse[2] / norm / self.unit;
-                row[1] = mu / self.unit;
+                let norm = norm(y).max(TINY);
+                add(0, -y[0] / norm / self.unit);
+                add(2, -y[2] / norm / self.unit);
+                add(1, mu);
             }
             (1, false) | (2, false) => {
-                row[1] = mu / self.unit;
-                row[0] = if i == 1 { 1.0 } else { -1.0 } / self.unit;
+                add(1, mu);
+                add(0, if i == 1 { 1.0 } else { -1.0 } / self.unit);
             }
-            _ => row[self.components] = 1.0,
+            _ => add(self.components, 1.0),
         }
-        row
+    }
+
+    /// Calls `add(index, index, second derivative)` for value `i`.
+    pub fn curvature(&self, i: usize, y: &[f64], mut add: impl FnMut(usize, usize, f64)) {
+        if !(self.lateral && i == 1) {
+            return;
+        }
+        let norm = norm(y).max(TINY);
+        for a in [0, 2] {
+            for b in [0, 2] {
+                let unit = if a == b { 1.0 } else { 0.0 };
+                add(a, b, (y[a] * y[b] / (norm * norm) - unit) / norm / self.unit);
+            }
+        }
     }
 }
 
-/// Euclidean norm by the square root, which is exact on every machine.
-trait Pinned {
-    fn hypot_pinned(self, other: f64) -> f64;
-}
+/// Below this a tangential impulse (N·s) has no direction.
+const TINY: f64 = 1e-12;
 
-impl Pinned for f64 {
-    fn hypot_pinned(self, other: f64) -> f64 {
-        (self * self + other * other).sqrt()
-    }
+/// Norm of the tangential part of an impulse in space.
+fn norm(y: &[f64]) -> f64 {
+    (y[0] * y[0] + y[2] * y[2]).sqrt()
 }

@@ -12,7 +12,7 @@ mod swing;
 
 pub use impact::ImpactConstraints;
 
-use crate::instant::{Instants, Quantities};
+use crate::instant::Quantities;
 use crate::model::Description;
 
 /// A constraint on the quantities of an instant: `value ≥ 0`.
@@ -51,30 +51,47 @@ impl PathConstraint {
         PathConstraint { name, form: Form::Linear { offset, terms }, unit, at_start: true }
     }
 
-    /// Scaled value at a node.
-    pub fn value(&self, instants: &Instants, node: usize) -> f64 {
+    /// Scaled value for the quantities of an instant.
+    #[inline]
+    pub fn value(&self, y: &[f64]) -> f64 {
         let value = match &self.form {
-            Form::Linear { offset, terms } => offset + terms.iter().map(|(q, c)| c * instants.value(node, *q)).sum::<f64>(),
-            Form::Cone { normal, factor, tangential } => factor * instants.value(node, *normal) - norm(instants, node, tangential),
+            Form::Linear { offset, terms } => offset + terms.iter().map(|(q, c)| c * y[*q]).sum::<f64>(),
+            Form::Cone { normal, factor, tangential } => factor * y[*normal] - norm(y, tangential),
         };
         value / self.unit
     }
 
     /// Calls `add(quantity, partial derivative)` for each quantity that the value depends on.
-    pub fn partials(&self, instants: &Instants, node: usize, mut add: impl FnMut(usize, f64)) {
+    #[inline]
+    pub fn partials(&self, y: &[f64], mut add: impl FnMut(usize, f64)) {
         match &self.form {
             Form::Linear { terms, .. } => terms.iter().for_each(|(q, c)| add(*q, c / self.unit)),
             Form::Cone { normal, factor, tangential } => {
                 add(*normal, factor / self.unit);
-                let norm = norm(instants, node, tangential).max(1e-9);
+                let norm = norm(y, tangential).max(TINY);
                 for q in tangential {
-                    add(*q, -instants.value(node, *q) / norm / self.unit);
+                    add(*q, -y[*q] / norm / self.unit);
                 }
+            }
+        }
+    }
+
+    /// Calls `add(quantity, quantity, second derivative)`; only a cone has any.
+    pub fn curvature(&self, y: &[f64], mut add: impl FnMut(usize, usize, f64)) {
+        let Form::Cone { tangential, .. } = &self.form else { return };
+        let norm = norm(y, tangential).max(TINY);
+        for a in tangential {
+            for b in tangential {
+                let unit = if a == b { 1.0 } else { 0.0 };
+                add(*a, *b, (y[*a] * y[*b] / (norm * norm) - unit) / norm / self.unit);
             }
         }
     }
 }
 
-fn norm(instants: &Instants, node: usize, quantities: &[usize]) -> f64 {
-    quantities.iter().map(|q| instants.value(node, *q).powi(2)).sum::<f64>().sqrt()
+/// Below this a tangential force (N) has no direction.
+const TINY: f64 = 1e-9;
+
+fn norm(y: &[f64], quantities: &[usize]) -> f64 {
+    quantities.iter().map(|q| y[*q] * y[*q]).sum::<f64>().sqrt()
 }

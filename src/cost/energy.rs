@@ -4,7 +4,7 @@
 //! element, and each part is integrated with its sign. The result is differentiable where roots are
 //! simple, and its gradient is exact: a root's motion does not change the integral to first order.
 
-use super::Integral;
+use super::{Integral, Kink};
 use crate::instant::Instants;
 use crate::lgl::NODES;
 use crate::model::Description;
@@ -20,28 +20,35 @@ pub fn integrate(description: &Description, mesh: &Mesh, instants: &Instants, in
             for (i, p) in power.iter_mut().enumerate() {
                 *p = instants.value(node(i), y.torque(j)) * instants.value(node(i), y.rate(j));
             }
-            let weights = absolute_weights(mesh, &power);
+            let (weights, roots) = absolute_weights(mesh, &power);
             for (i, (p, w)) in power.iter().zip(&weights).enumerate() {
+                let (torque, rate) = (y.torque(j), y.rate(j));
                 integral.value += share * w * p;
-                let (torque, rate) = (instants.value(node(i), y.torque(j)), instants.value(node(i), y.rate(j)));
-                integral.partials.push((node(i), y.torque(j), share * w * rate));
-                integral.partials.push((node(i), y.rate(j), share * w * torque));
+                integral.partials.push((node(i), torque, share * w * instants.value(node(i), rate)));
+                integral.partials.push((node(i), rate, share * w * instants.value(node(i), torque)));
+                integral.seconds.push((node(i), torque, rate, share * w));
+            }
+            for (root, slope) in roots {
+                let shape = mesh.lobatto.values(root);
+                integral.kinks.push(Kink { joint: j, first: node(0), shape, weight: 2.0 * share / slope.abs() });
             }
         }
     }
 }
 
-/// Weights ω with ∫₀¹ |p| = Σ ω p(node), for the quartic p through `values`.
-fn absolute_weights(mesh: &Mesh, values: &[f64; NODES]) -> [f64; NODES] {
+/// Weights ω with ∫₀¹ |p| = Σ ω p(node) for the quartic p through `values`, and its roots with slopes.
+fn absolute_weights(mesh: &Mesh, values: &[f64; NODES]) -> ([f64; NODES], Roots) {
     let lobatto = &mesh.lobatto;
     let coefficients = lobatto.interpolate(values);
-    let mut cuts = roots(&coefficients);
-    cuts.push(1.0);
+    let mut found = Roots::new();
+    if may_change_sign(&coefficients) {
+        roots(&coefficients, &mut found);
+    }
     let mut weights = [0.0; NODES];
     let mut before = [0.0; NODES];
     let mut from = 0.0;
-    for to in cuts {
-        let after = lobatto.integrals(to);
+    for to in found.iter().map(|r| r.0).chain([1.0]) {
+        let after = if to == 1.0 { lobatto.weights } else { lobatto.integrals(to) };
         let sign = if evaluate(&coefficients, 0.5 * (from + to)) >= 0.0 { 1.0 } else { -1.0 };
         for ((w, a), b) in weights.iter_mut().zip(&after).zip(&before) {
             *w += sign * (a - b);
@@ -49,7 +56,23 @@ fn absolute_weights(mesh: &Mesh, values: &[f64; NODES]) -> [f64; NODES] {
         before = after;
         from = to;
     }
-    weights
+    (weights, found)
+}
+
+/// Roots with the slope there; a quartic has at most four.
+type Roots = smallvec::SmallVec<[(f64, f64); 4]>;
+
+/// A polynomial whose Bernstein coefficients on [0, 1] agree in sign has no root there.
+fn may_change_sign(c: &[f64; NODES]) -> bool {
+    let [c0, c1, c2, c3, c4] = *c;
+    let bernstein = [
+        c0,
+        c0 + c1 / 4.0,
+        c0 + c1 / 2.0 + c2 / 6.0,
+        c0 + 0.75 * c1 + 0.5 * c2 + 0.25 * c3,
+        c0 + c1 + c2 + c3 + c4,
+    ];
+    bernstein.iter().any(|b| *b > 0.0) && bernstein.iter().any(|b| *b < 0.0)
 }
 
 fn evaluate(p: &[f64], s: f64) -> f64 {
@@ -57,41 +80,51 @@ fn evaluate(p: &[f64], s: f64) -> f64 {
 }
 
 /// Roots in (0, 1) of a polynomial, ascending: between the roots of its derivative it is monotone.
-fn roots(p: &[f64]) -> Vec<f64> {
+fn roots(p: &[f64], found: &mut Roots) {
     if p.len() <= 1 {
-        return Vec::new();
+        return;
     }
-    let derivative: Vec<f64> = p.iter().enumerate().skip(1).map(|(k, c)| k as f64 * c).collect();
-    let mut bounds = vec![0.0];
-    bounds.extend(roots(&derivative));
-    bounds.push(1.0);
-    let mut found = Vec::new();
-    for pair in bounds.windows(2) {
-        let (mut a, mut b) = (pair[0], pair[1]);
-        let (fa, fb) = (evaluate(p, a), evaluate(p, b));
-        if fa == 0.0 && a > 0.0 || fa * fb >= 0.0 {
-            continue;
-        }
-        // Newton's method, kept inside the bracket by bisection.
-        let rising = fb > fa;
-        let mut s = 0.5 * (a + b);
-        for _ in 0..60 {
-            let value = evaluate(p, s);
-            if (value > 0.0) == rising {
-                b = s;
-            } else {
-                a = s;
-            }
-            let newton = s - value / evaluate(&derivative, s);
-            let next = if newton > a && newton < b { newton } else { 0.5 * (a + b) };
-            if (next - s).abs() < 1e-15 {
-                break;
-            }
-            s = next;
-        }
-        found.push(s);
+    let mut buffer = [0.0; NODES];
+    let derivative = &mut buffer[..p.len() - 1];
+    for (k, slot) in derivative.iter_mut().enumerate() {
+        *slot = (k + 1) as f64 * p[k + 1];
     }
-    found
+    let mut bounds = Roots::new();
+    roots(derivative, &mut bounds);
+    bounds.push((1.0, 0.0));
+    let mut a = 0.0;
+    for (b, _) in bounds {
+        if let Some(root) = bracketed(p, derivative, a, b) {
+            found.push((root, evaluate(derivative, root)));
+        }
+        a = b;
+    }
+}
+
+/// The root between `a` and `b`, where the polynomial is monotone: Newton's method, kept inside the
+/// bracket by bisection.
+fn bracketed(p: &[f64], derivative: &[f64], mut a: f64, mut b: f64) -> Option<f64> {
+    let (fa, fb) = (evaluate(p, a), evaluate(p, b));
+    if fa * fb >= 0.0 {
+        return None;
+    }
+    let rising = fb > fa;
+    let mut s = 0.5 * (a + b);
+    for _ in 0..60 {
+        let value = evaluate(p, s);
+        if (value > 0.0) == rising {
+            b = s;
+        } else {
+            a = s;
+        }
+        let newton = s - value / evaluate(derivative, s);
+        let next = if newton > a && newton < b { newton } else { 0.5 * (a + b) };
+        if (next - s).abs() < 1e-15 {
+            break;
+        }
+        s = next;
+    }
+    Some(s)
 }
 
 #[cfg(test)]
@@ -101,8 +134,6 @@ mod tests {
     #[test]
     fn roots_of_a_quartic_with_four_roots() {
         // (s − 0.1)(s − 0.3)(s − 0.6)(s − 0.9)
-        let p = [0.0162, -0.261, 1.11, -1.8, 0.9].map(|c: f64| c);
-        let _ = p;
         let expand = |roots: &[f64]| {
             let mut p = vec![1.0];
             for r in roots {
@@ -115,8 +146,9 @@ mod tests {
             }
             p
         };
-        let found = roots(&expand(&[0.1, 0.3, 0.6, 0.9]));
-        for (f, e) in found.iter().zip([0.1, 0.3, 0.6, 0.9]) {
+        let mut found = Roots::new();
+        roots(&expand(&[0.1, 0.3, 0.6, 0.9]), &mut found);
+        for ((f, _), e) in found.iter().zip([0.1, 0.3, 0.6, 0.9]) {
             assert!((f - e).abs() < 1e-12, "{found:?}");
         }
         assert_eq!(found.len(), 4);
@@ -127,7 +159,7 @@ mod tests {
         let mesh = Mesh::new(1, 4);
         let f = |s: f64| s * s - 0.25;
         let values = mesh.lobatto.nodes.map(f);
-        let weights = absolute_weights(&mesh, &values);
+        let (weights, _) = absolute_weights(&mesh, &values);
         let integral: f64 = weights.iter().zip(&values).map(|(w, v)| w * v).sum();
         // ∫|s² − 1/4| over [0, 1] = 1/4
         assert!((integral - 0.25).abs() < 1e-14);

@@ -14,12 +14,29 @@ pub struct Integral {
     pub value: f64,
     /// (node, quantity, partial derivative).
     pub partials: Vec<(usize, usize, f64)>,
+    /// (node, quantity, quantity, second derivative), each unordered pair once.
+    pub seconds: Vec<(usize, usize, usize, f64)>,
+    /// Kinks of |power|: second derivative `weight · ∇power(root) ∇power(root)ᵀ` each.
+    pub kinks: Vec<Kink>,
+}
+
+/// A simple root of a joint's power inside an element.
+#[derive(Clone, Debug)]
+pub struct Kink {
+    pub joint: usize,
+    /// First node of the element.
+    pub first: usize,
+    /// Values of the Lagrange polynomials at the root.
+    pub shape: [f64; crate::lgl::NODES],
+    pub weight: f64,
 }
 
 /// Integral of the integrand of `criterion` over one half step, per unit of s (multiply by T).
 pub fn integrate(criterion: Criterion, description: &Description, mesh: &Mesh, instants: &Instants, integral: &mut Integral) {
     integral.value = 0.0;
     integral.partials.clear();
+    integral.seconds.clear();
+    integral.kinks.clear();
     match criterion {
         Criterion::Torque => torque::integrate(description, mesh, instants, integral),
         Criterion::Energy => energy::integrate(description, mesh, instants, integral),

@@ -72,7 +72,7 @@ impl Convexifier {
             w.fill(0.0);
             tau = 1.0;
         }
-        axpy(tau, model, w);
+        shift(tau, model, n, w);
         qp.hessian.copy_from_slice(w);
     }
 
@@ -83,10 +83,18 @@ impl Convexifier {
 
     fn definite_shifted(&mut self, w: &[f64], n: usize, tau: f64, model: &[f64], floor: f64) -> bool {
         self.augmented.copy_from_slice(w);
-        axpy(tau, model, &mut self.augmented);
+        shift(tau, model, n, &mut self.augmented);
         let shifted = std::mem::take(&mut self.augmented);
         let definite = self.definite(&shifted, n, floor);
         self.augmented = shifted;
         definite
+    }
+}
+
+/// W + τ(B + diag B): where B has forgotten a direction, its diagonal still knows the variables' scales.
+fn shift(tau: f64, model: &[f64], n: usize, w: &mut [f64]) {
+    axpy(tau, model, w);
+    for (w, b) in w.iter_mut().step_by(n + 1).zip(model.iter().step_by(n + 1)) {
+        *w += 0.1 * tau * b;
     }
 }

@@ -72,7 +72,8 @@ impl<P: Problem> Run<'_, '_, P> {
             }
         }
         let best = self.subproblem.linear_violation;
-        if self.kkt.violation > self.options.feasibility && violation - best <= HOPELESS * violation {
+        let bounded = max_abs(&self.subproblem.step.d) >= 0.99 * self.radius;
+        if self.kkt.violation > self.options.feasibility && violation - best <= HOPELESS * violation && !bounded {
             self.look_at_violation();
             return self.towards_feasibility();
         }
@@ -103,10 +104,13 @@ impl<P: Problem> Run<'_, '_, P> {
         self.set_bounds();
         self.subproblem.qp.gradient.copy_from_slice(&self.gradient);
         let newton = self.exact && !self.distrust && self.phase == Phase::Optimality;
-        if newton {
-            self.exact = self.view.hessian(&self.lambda, &self.mu, &mut self.curvature);
+        if newton && !self.hessian_known {
+            // Once per iterate, before any trial point is evaluated.
+            self.exact = self.view.hessian(&self.lambda, &self.mu, &mut self.hessian);
+            self.hessian_known = self.exact;
         }
         if newton && self.exact {
+            self.curvature.copy_from_slice(&self.hessian);
             let (model, qp) = (&self.lagrangian_model.b, &mut self.subproblem.qp);
             self.convexifier.convexify(&mut self.curvature, qp, model, augment);
         } else {
@@ -129,7 +133,7 @@ impl<P: Problem> Run<'_, '_, P> {
     }
 
     fn set_bounds(&mut self) {
-        let limit = self.options.step_limit;
+        let limit = self.options.step_limit.min(self.radius);
         let qp = &mut self.subproblem.qp;
         for (j, z) in self.point.z.iter().enumerate() {
             qp.lower[j] = (self.lower[j] - z).max(-limit).min(0.0);

@@ -13,7 +13,8 @@ use super::scaled::Point;
 
 /// Corrections of one step.
 const CORRECTIONS: usize = 2;
-const TRIALS: usize = 40;
+/// Step lengths per direction; after that a new subproblem with a smaller radius points somewhere better, at no evaluation.
+const TRIALS: usize = 1;
 
 impl<P: Problem> Run<'_, '_, P> {
     /// Finds an acceptable point along `d` and linearizes there. `false` if there is none; the iterate then stands, with
@@ -22,11 +23,7 @@ impl<P: Problem> Run<'_, '_, P> {
         let from = self.worth(&self.point);
         let mut alpha = 1.0;
         let mut rows_are_valid = true;
-        let (reach, size) = (max_abs(&self.d), 1.0 + max_abs(&self.point.z));
         for _ in 0..TRIALS {
-            if alpha < 1.0 && alpha * reach < 1e-15 * size {
-                break;
-            }
             self.place_trial(alpha);
             if self.view.evaluate(&mut self.trial).is_err() {
                 alpha *= 0.25;
@@ -53,6 +50,7 @@ impl<P: Problem> Run<'_, '_, P> {
         if !rows_are_valid {
             self.relinearize();
         }
+        self.radius = 0.3 * max_abs(&self.d);
         false
     }
 

@@ -10,10 +10,15 @@ const SHARE: f64 = 0.1;
 /// How often the penalty may come down. A finite number, so that one merit function governs in the end.
 const LOWERINGS: usize = 10;
 
+/// Violation, in units of the first point's (or one), that no step may reach from below (as in Wächter & Biegler 2006).
+const RUNAWAY: f64 = 1e4;
+
 #[derive(Clone, Debug)]
 pub(super) struct Merit {
     pub(super) low: f64,
     pub(super) high: f64,
+    /// Violation above which only the high end may let it grow: what low penalties buy must not run away.
+    pub(super) ceiling: f64,
     /// How many more times the penalty may be lowered.
     lowerings: usize,
 }
@@ -39,7 +44,7 @@ impl Promise {
 impl Merit {
     pub(super) fn new(penalty: f64) -> Self {
         let high = if penalty.is_finite() && penalty > 0.0 { penalty } else { 1.0 };
-        Self { low: 1e-3 * high, high, lowerings: LOWERINGS }
+        Self { low: 1e-3 * high, high, ceiling: 0.0, lowerings: LOWERINGS }
     }
 
     /// Raises the penalty until the promised reduction of φ is at least a share of ρ times the promised relief
@@ -55,7 +60,7 @@ impl Merit {
 
     /// The merit function of the violation alone.
     pub(super) fn of_violation() -> Self {
-        Self { low: 1.0, high: 1.0, lowerings: 0 }
+        Self { low: 1.0, high: 1.0, ceiling: 0.0, lowerings: 0 }
     }
 
     /// Lowers a penalty that a bad spell has driven far beyond the largest multiplier: it would tie the iterates to every
@@ -82,7 +87,13 @@ impl Merit {
             let change = (to.0 - from.0) + penalty * (to.1 - from.1);
             promised >= -rounding && change <= -SUFFICIENT * alpha * promised.max(0.0) + rounding
         };
-        let (by_low, by_high) = (promise.reduction(self.low) > 0.0 && keeps(self.low), keeps(self.high));
+        if to.1 > RUNAWAY * self.ceiling.max(1.0) && to.1 > from.1 {
+            // The objective has no floor out there, and the penalty is too low to provide one.
+            self.raise(10.0 * self.high);
+            return false;
+        }
+        let tame = to.1 <= self.ceiling.max(from.1);
+        let (by_low, by_high) = (tame && promise.reduction(self.low) > 0.0 && keeps(self.low), keeps(self.high));
         if by_high && !by_low && to.1 < from.1 {
             // The price of violation at which this step breaks even.
             let price = (to.0 - from.0) / (from.1 - to.1);
@@ -114,7 +125,7 @@ mod tests {
 
     #[test]
     fn either_end_of_the_interval_may_accept() {
-        let mut merit = Merit { low: 0.01, high: 10.0, lowerings: 0 };
+        let mut merit = Merit { low: 0.01, high: 10.0, ceiling: 1.0, lowerings: 0 };
         // Less f for more v: good for the low end only.
         let promise = Promise { slope: -1.0, curvature: 0.5, relief: 0.1 };
         assert!(merit.accepts(&promise, 1.0, (0.0, 0.1), (-0.7, 0.3)));

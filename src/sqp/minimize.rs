@@ -81,6 +81,8 @@ pub(super) struct Run<'a, 'p, P: Problem> {
     pub(super) d: Vec<f64>,
     pub(super) promise: Promise,
     pub(super) kind: Kind,
+    /// Largest component of the next step: short steps along long directions teach to ask for shorter ones.
+    pub(super) radius: f64,
     /// The last subproblem of the optimality phase gave way.
     pub(super) elastic: bool,
     alpha: f64,
@@ -92,6 +94,8 @@ pub(super) struct Run<'a, 'p, P: Problem> {
     pub(super) exact: bool,
     /// At this iterate the exact Hessian has led nowhere.
     pub(super) distrust: bool,
+    pub(super) hessian: Vec<f64>,
+    pub(super) hessian_known: bool,
     pub(super) convexifier: Convexifier,
     pub(super) curvature: Vec<f64>,
 
@@ -126,6 +130,7 @@ impl<'a, 'p, P: Problem> Run<'a, 'p, P> {
             d: zeros(),
             promise: Promise::default(),
             kind: Kind::Start,
+            radius: f64::INFINITY,
             elastic: false,
             alpha: 0.0,
             active: 0,
@@ -133,6 +138,8 @@ impl<'a, 'p, P: Problem> Run<'a, 'p, P> {
             violation_model: QuasiNewton::new(n),
             exact: options.exact_hessian,
             distrust: false,
+            hessian: vec![0.0; n * n],
+            hessian_known: false,
             convexifier: Convexifier::new(n),
             curvature: vec![0.0; n * n],
             former: zeros(),
@@ -166,6 +173,7 @@ impl<'a, 'p, P: Problem> Run<'a, 'p, P> {
             // the objective.
             let mut humility = 0;
             self.distrust = false;
+            self.hessian_known = false;
             loop {
                 let direction = match self.direction() {
                     Ok(direction) => direction,
@@ -176,8 +184,11 @@ impl<'a, 'p, P: Problem> Run<'a, 'p, P> {
                     Direction::Stationary if self.phase == Phase::Optimality => return self.end(Status::Optimal, k),
                     Direction::Stationary => return self.end(Status::Infeasible, k),
                     Direction::Step if self.search() => break,
+                    // `search` has reduced the radius.
+                    Direction::Step if self.radius > 1e-12 * (1.0 + max_abs(&self.point.z)) => continue,
                     Direction::Step | Direction::None => {}
                 }
+                self.radius = f64::INFINITY;
                 humility += 1;
                 if !self.humble(humility) {
                     return self.end(Status::NoProgress, k);
@@ -208,6 +219,7 @@ impl<'a, 'p, P: Problem> Run<'a, 'p, P> {
             self.view.weigh_rows()?;
             self.view.weigh(&mut self.point);
         }
+        self.merit.ceiling = self.point.violation;
         self.forget();
         self.subproblem.gather(&self.view, &self.point, &self.mu)
     }
@@ -336,8 +348,15 @@ impl<'a, 'p, P: Problem> Run<'a, 'p, P> {
         }
     }
 
+    /// Records an accepted step length and adapts the radius to it.
     pub(super) fn took(&mut self, alpha: f64) {
         self.alpha = alpha;
+        let reach = max_abs(&self.d);
+        if alpha <= 0.25 {
+            self.radius = 2.0 * alpha * reach;
+        } else if alpha == 1.0 {
+            self.radius = if reach < 0.5 * self.radius { f64::INFINITY } else { 4.0 * self.radius };
+        }
     }
 
     fn end(self, status: Status, iterations: usize) -> Solution {

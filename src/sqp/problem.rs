@@ -55,8 +55,9 @@ pub trait Problem {
     }
 
     /// The Hessian of f − λᵀc_E − μᵀc_I at the linearized point, row by row (n·n numbers, of which the lower triangle is
-    /// read). Returning `false`, the default, asks for quasi-Newton approximations instead.
-    fn hessian(&self, equality_multipliers: &[f64], inequality_multipliers: &[f64], hessian: &mut [f64]) -> bool {
+    /// read). Called after `linearize` and before the next `evaluate`. Need not be exact: Gauss-Newton curvature is welcome.
+    /// Returning `false`, the default, asks for quasi-Newton approximations from then on.
+    fn hessian(&mut self, equality_multipliers: &[f64], inequality_multipliers: &[f64], hessian: &mut [f64]) -> bool {
         let _ = (equality_multipliers, inequality_multipliers, hessian);
         false
     }

@@ -92,7 +92,7 @@ impl<'a> Multibody<'a> {
 
     /// Moves the mechanism to q, q̇, q̈ (rad, rad/s, rad/s²), with p at rest in the origin.
     ///
-    /// With q̈ = 0, accelerations are those that come from velocities alone.
+    /// Each list has one number per coordinate of q. With q̈ = 0, accelerations are those that come from velocities alone.
     pub fn set(&mut self, q: &[f64], qd: &[f64], qdd: &[f64]) {
         let axis = if self.description.rotation == Rotation::Roll { 0 } else { 2 };
         let theta = self.description.joints();

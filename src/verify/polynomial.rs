@@ -17,7 +17,7 @@ pub struct Polynomials {
 }
 
 impl Polynomials {
-    /// From values and rates; all lists of a half step must have the length of its `q_initial`.
+    /// From values and rates; a number that is missing in a list makes its coordinate undefined.
     pub fn new(half_step: &HalfStep) -> Self {
         let interior = half_step.q_interior.len();
         let mut nodes = vec![0.0, 0.0];
@@ -25,11 +25,12 @@ impl Polynomials {
         nodes.extend([1.0, 1.0]);
         let mut differences = Vec::new();
         for k in 0..half_step.q_initial.len() {
-            let (first, last) = (half_step.q_initial[k], half_step.q_final[k]);
+            let of = |list: &[f64]| list.get(k).copied().unwrap_or(f64::NAN);
+            let (first, last) = (of(&half_step.q_initial), of(&half_step.q_final));
             let mut values = vec![first, first];
-            values.extend(half_step.q_interior.iter().map(|q| q[k]));
+            values.extend(half_step.q_interior.iter().map(|q| of(q)));
             values.extend([last, last]);
-            let rates = [half_step.qd_initial[k], half_step.qd_final[k]].map(|rate| rate * half_step.duration);
+            let rates = [of(&half_step.qd_initial), of(&half_step.qd_final)].map(|rate| rate * half_step.duration);
             differences.extend(divided_differences(&nodes, values, rates));
         }
         Polynomials { duration: half_step.duration, nodes, differences }

@@ -252,7 +252,7 @@ impl Problem for Chebyshev {
     fn inequality_row(&self, i: usize, row: &mut [f64]) {
         self.basis(i, row);
     }
-    fn hessian(&self, _: &[f64], _: &[f64], hessian: &mut [f64]) -> bool {
+    fn hessian(&mut self, _: &[f64], _: &[f64], hessian: &mut [f64]) -> bool {
         hessian.fill(0.0);
         self.exact
     }

@@ -72,7 +72,7 @@ impl<M: Model<N>, const N: usize> Problem for Adapter<M, N> {
     fn inequality_row(&self, i: usize, row: &mut [f64]) {
         row.copy_from_slice(&self.inequalities[i].g);
     }
-    fn hessian(&self, lambda: &[f64], mu: &[f64], hessian: &mut [f64]) -> bool {
+    fn hessian(&mut self, lambda: &[f64], mu: &[f64], hessian: &mut [f64]) -> bool {
         if !self.exact {
             return false;
         }
@@ -98,20 +98,23 @@ pub fn solve<M: Model<N>, const N: usize>(exact: bool, options: &Options) -> Sol
 
 /// Prints the log of a run when the environment asks for it.
 pub fn print(line: &Iteration) -> Control {
-    if std::env::var_os("SQP_LOG").is_some() {
-        println!(
-            "{:4} {:15.8e} v {:8.1e} s {:8.1e} α {:7.1e} |s| {:7.1e} ρ {:7.1e} active {:2} rows {:3} {:?}",
-            line.k,
-            line.objective,
-            line.violation,
-            line.stationarity,
-            line.step,
-            line.length,
-            line.penalty,
-            line.active,
-            line.rows,
-            line.kind
-        );
-    }
+    if std::env::var_os("SQP_LOG").is_some() { show(line) } else { Control::Continue }
+}
+
+/// Prints a line of the log.
+pub fn show(line: &Iteration) -> Control {
+    println!(
+        "{:4} {:15.8e} v {:8.1e} s {:8.1e} α {:7.1e} |s| {:7.1e} ρ {:7.1e} active {:2} rows {:3} {:?}",
+        line.k,
+        line.objective,
+        line.violation,
+        line.stationarity,
+        line.step,
+        line.length,
+        line.penalty,
+        line.active,
+        line.rows,
+        line.kind
+    );
     Control::Continue
 }

@@ -1,8 +1,9 @@
 //! Newton–Euler in numbers against the generated kernels: two derivations, one physics.
 
-use crate::motions::{Random, gaits};
-use piaffe::model::Gait;
-use piaffe::verify::{impact::impact, multibody::Multibody, support::Support};
+use crate::motions::{Random, gaits, stepping};
+use piaffe::gaits::trot::Trot;
+use piaffe::model::{Body, Gait};
+use piaffe::verify::{VerifyError, impact::impact, multibody::Multibody, support::Support, verify};
 
 const TOLERANCE: f64 = 1e-11;
 
@@ -91,6 +92,16 @@ fn single_support_agrees() {
             }
         }
     }
+}
+
+#[test]
+fn a_vanishing_f1_is_found() {
+    // Without mass nothing determines β̈.
+    let mut d = Trot.description().clone();
+    let massless = d.bodies.iter().map(|body| Body { mass: 0.0, inertia: [0.0; 3], ..body.clone() });
+    d.bodies = Box::leak(massless.collect());
+    assert_eq!(Support::new(&d, 0).accelerate(&[0.1, -0.5, 0.2, -0.7], &[1.0; 4], &mut [0.0; 4]), None);
+    assert!(matches!(verify(&d, &stepping(&d), 0.3, 11), Err(VerifyError::Blowup { half_step: 1, time: 0.0 })));
 }
 
 #[test]

@@ -93,15 +93,14 @@ fn quadrature_is_exact_for_cubics_and_of_fourth_order() {
     let grid = |n: usize, f: fn(f64) -> f64| (0..=n).map(|i| f(i as f64 / n as f64)).collect::<Vec<_>>();
     assert!((integral(&grid(7, |t| 1.0 - 2.0 * t + 4.0 * t * t * t), 1.0 / 7.0) - 1.0).abs() < 1e-15);
     let error = |n: usize| (integral(&grid(n, f64::exp), 1.0 / n as f64) - (1.0_f64.exp() - 1.0)).abs();
-    assert!(error(20) < 16.5 / 16.0 * error(10) / 14.0 && error(20) > 0.0);
+    let ratio = error(50) / error(100);
+    assert!((14.0..18.0).contains(&ratio), "halving the spacing divides the error by {ratio}");
 }
 
 #[test]
 fn kinks_of_a_magnitude_cost_no_accuracy() {
     // ∫₀¹ |sin 9t| dt: two kinks, neither of them on the grid.
-    let exact = (4.0 + 1.0 + (9.0_f64 - 2.0 * std::f64::consts::PI).cos().abs().mul_add(0.0, 0.0)
-        - (9.0_f64 - 2.0 * std::f64::consts::PI).cos())
-        / 9.0;
+    let exact = (5.0 - 9.0_f64.cos()) / 9.0;
     let values: Vec<f64> = (0..=200).map(|i| (9.0 * i as f64 / 200.0).sin()).collect();
     let found = integral_of_magnitude(&values, 1.0 / 200.0);
     assert!((found - exact).abs() < 1e-7 * exact, "{found} instead of {exact}");

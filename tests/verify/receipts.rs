@@ -1,6 +1,6 @@
 //! What a receipt says, and that it catches what is wrong.
 
-use crate::motions::{closed_trot, gaits, stepping};
+use crate::motions::{Random, closed_trot, gaits, stepping};
 use piaffe::gaits::{curvet::Curvet, trot::Trot};
 use piaffe::model::{Description, Gait};
 use piaffe::verify::{Finding, Receipt, VerifyError, sample, verify};
@@ -183,4 +183,27 @@ fn what_cannot_be_verified_is_refused_with_a_reason() {
     let two = piaffe::motion::Motion { half_steps: [&good.half_steps[..], &good.half_steps[..]].concat() };
     let message = verify(d, &two, 0.3, GRID).unwrap_err().to_string();
     assert_eq!(message, "the trot is defined by 1 half step(s), the motion has 2");
+}
+
+#[test]
+fn wild_motions_end_in_a_receipt_or_a_reason() {
+    let mut random = Random::new(5);
+    for gait in gaits() {
+        let d = gait.description();
+        for size in [0.1, 1.0, 10.0, 1e3, 1e8] {
+            let mut motion = stepping(d);
+            for h in &mut motion.half_steps {
+                let interior = h.q_interior.iter_mut().flatten();
+                let lists = [&mut h.q_initial, &mut h.qd_initial, &mut h.q_final, &mut h.qd_final];
+                for x in lists.into_iter().flatten().chain(interior) {
+                    *x += size * random.next();
+                }
+                h.duration *= 1.0 + size * random.next().abs();
+                h.betad_initial += size * random.next();
+            }
+            if let Ok(receipt) = verify(d, &motion, 0.3, 101) {
+                assert!(receipt.cycle_error > 0.0 && receipt.max_violation > 0.0, "{receipt:?}");
+            }
+        }
+    }
 }

@@ -97,27 +97,54 @@ pub fn kernels(model: &mut Model, leg: usize) -> Vec<Kernel> {
     vec![general, touchdown(model, leg)]
 }
 
-/// The same impact as the end of a single support on the other foot, with its Jacobian in (q, q̇⁻).
+/// The impact on one foot at the end of single support on the other, with the velocities after as
+/// symbols, so that what depends on them can be differentiated by parts.
+pub struct Touchdown {
+    /// Aq about the landing foot.
+    pub inertia: Vec<Vec<Poly>>,
+    /// Momenta before.
+    pub before: Vec<Poly>,
+    /// Symbols of q̇⁺.
+    pub plus: Vec<Var>,
+    /// Momenta before minus after: zero.
+    pub residual: Vec<Poly>,
+    /// Impulse, vertical velocity of the leaving foot after, of the landing foot before.
+    pub outputs: Vec<Poly>,
+}
+
+impl Touchdown {
+    pub fn new(model: &mut Model, leg: usize) -> Touchdown {
+        let stance = 1 - leg;
+        let qd = model.q(1);
+        let p = model.foot(stance).map(|x| -&x);
+        let platform = model.rate(&p);
+        let before = momenta_before(model, leg, &platform);
+        let inertia = inertia_about(model, leg);
+        let plus: Vec<Var> = (0..qd.len()).map(|k| model.ring.symbol(format!("plus{k}"))).collect();
+        let rename: BTreeMap<Var, Poly> = qd.iter().copied().zip(plus.iter().map(|v| Poly::from(*v))).collect();
+        let coordinates = model.coordinates.q.clone();
+        let momenta = model.momenta(Origin::Foot(leg), &coordinates);
+        let after: Vec<Poly> = momenta.iter().map(|m| model.ring.substitute(m, &rename)).collect();
+        let residual = before.iter().zip(&after).map(|(b, a)| b - a).collect();
+        let com_before = com_velocity(model, &platform);
+        let mut outputs = impulse(model, leg, &com_before, &rename);
+        let leaving = subtract(&model.foot(stance), &model.foot(leg));
+        let leaving_rate = model.rate(&leaving);
+        outputs.push(model.ring.substitute(&leaving_rate[1], &rename));
+        let landing = subtract(&model.foot(leg), &model.foot(stance));
+        outputs.push(model.rate(&landing)[1].clone());
+        Touchdown { inertia, before, plus, residual, outputs }
+    }
+}
+
+/// The impact at the end of a single support, with its Jacobian in (q, q̇⁻).
 fn touchdown(model: &mut Model, leg: usize) -> Kernel {
-    let stance = 1 - leg;
     let (q, qd) = (model.q(0), model.q(1));
     let by: Vec<Var> = q.iter().chain(&qd).copied().collect();
-    let p = model.foot(stance).map(|x| -&x);
-    let platform = model.rate(&p);
-    let before = momenta_before(model, leg, &platform);
-    let inertia = inertia_about(model, leg);
+    let Touchdown { inertia, before, plus, residual, outputs } = Touchdown::new(model, leg);
     let factors = Factors::new(&mut model.ring, &inertia);
     let solution = factors.solve(&mut model.ring, &before);
-
-    // Velocities after as symbols first, so that what depends on them can be differentiated by parts.
-    let plus: Vec<Var> = (0..q.len()).map(|k| model.ring.symbol(format!("plus{k}"))).collect();
-    let rename: BTreeMap<Var, Poly> = qd.iter().copied().zip(plus.iter().map(|v| Poly::from(*v))).collect();
     let insert: BTreeMap<Var, Poly> = plus.iter().copied().zip(solution.iter().cloned()).collect();
-
-    let coordinates = model.coordinates.q.clone();
-    let momenta = model.momenta(Origin::Foot(leg), &coordinates);
-    let after: Vec<Poly> = momenta.iter().map(|m| model.ring.substitute(m, &rename)).collect();
-    let residual: Vec<Poly> = before.iter().zip(&after).map(|(b, a)| b - a).collect();
     let partial = model.jacobian(&residual, &by);
     // Aq ∂q̇⁺/∂w = ∂(P⁻ − Aq q̇⁺)/∂w with q̇⁺ held.
     let mut columns: Vec<Vec<Poly>> = Vec::new();
@@ -126,17 +153,6 @@ fn touchdown(model: &mut Model, leg: usize) -> Kernel {
         columns.push(factors.solve(&mut model.ring, &right));
     }
 
-    let com_before = com_velocity(model, &platform);
-    let impulse = impulse(model, leg, &com_before, &rename);
-    let leaving = subtract(&model.foot(stance), &model.foot(leg));
-    let leaving_rate = model.rate(&leaving);
-    let leaving_rate = model.ring.substitute(&leaving_rate[1], &rename);
-    let landing = subtract(&model.foot(leg), &model.foot(stance));
-    let landing_rate = model.rate(&landing)[1].clone();
-
-    let mut outputs = impulse;
-    outputs.push(leaving_rate);
-    outputs.push(landing_rate);
     let direct = model.jacobian(&outputs, &by);
     let through = model.jacobian(&outputs, &plus);
     let mut jacobian: Vec<Vec<Poly>> =

@@ -4,6 +4,7 @@
 //! (eq. 6, 8–10), `impact` the passive impacts (eq. 11, 12), `staging` what of eq. 8 and 9 can be
 //! evaluated before β is known. All follow Kane's form `Σ m ∂v/∂Ẋ·a + ∂ω/∂Ẋ·(Iω̇ + ω×Iω)`.
 
+mod curvature;
 mod floating;
 mod impact;
 mod kernel;
@@ -27,6 +28,7 @@ pub fn kernels(mechanism: &Mechanism) -> (Model, Vec<Kernel>) {
         kernels.extend(stance::kernels(&mut model, leg));
         kernels.extend(staging::kernels(&mut model, leg));
         kernels.extend(impact::kernels(&mut model, leg));
+        kernels.extend(curvature::kernels(&mut model, leg));
     }
     kernels.push(impact::both_feet(&mut model));
     (model, kernels)

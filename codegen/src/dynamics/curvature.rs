@@ -1,0 +1,143 @@
+//! Second derivatives, contracted with multipliers: what an exact Hessian needs of the dynamics.
+//!
+//! A weighted sum of generalized forces is the virtual power of the motion's d'Alembert forces in a
+//! virtual velocity: `Σ nₖ Qₖ + φ·F = Σ m (δv + φ)·(a + g) + δω·(Iω̇ + ω×Iω)`, δv linear in n. So one
+//! scalar holds all rows, and it is small.
+
+use super::kernel::Kernel;
+use super::kinematics::{Vec3, add, cross, dot, subtract};
+use super::model::{Model, Origin, scaled};
+use super::solve::Factors;
+use super::stance::Stance;
+use crate::expr::{Poly, Var};
+use std::collections::BTreeMap;
+
+/// Kernels of the Hessian for stance on `leg`, and for the impact on `leg`.
+pub fn kernels(model: &mut Model, leg: usize) -> Vec<Kernel> {
+    vec![instant(model, leg), touchdown(model, leg)]
+}
+
+fn symbols(model: &mut Model, name: &str, count: usize) -> Vec<Var> {
+    (0..count).map(|k| model.ring.symbol(format!("{name}{k}"))).collect()
+}
+
+/// The expression with every rate replaced by the symbol of its coordinate in `by`.
+fn with_rates(model: &mut Model, v: &Vec3, by: &BTreeMap<Var, Poly>) -> Vec3 {
+    [0, 1, 2].map(|i| model.ring.substitute(&v[i], by))
+}
+
+/// Virtual power of the generalized forces in the virtual rates `n`, and of the reaction in `phi`.
+fn virtual_power(model: &mut Model, leg: usize, n: &[Var], phi: &[Var]) -> Poly {
+    let rename: BTreeMap<Var, Poly> = model.q(1).into_iter().zip(n.iter().map(|v| Poly::from(*v))).collect();
+    let mut translation = [Poly::zero(), Poly::zero(), Poly::zero()];
+    for (slot, symbol) in translation.iter_mut().zip(phi) {
+        *slot = (*symbol).into();
+    }
+    let mut power = Poly::zero();
+    for (b, centre) in model.centres(Origin::Foot(leg)).iter().enumerate() {
+        let body = model.mechanism.bodies[b].clone();
+        let velocity = model.rate(centre);
+        let mut acceleration = model.rate(&velocity);
+        acceleration[1] += &Poly::constant(model.mechanism.gravity);
+        let virtual_velocity = add(&with_rates(model, &velocity, &rename), &translation);
+        power += &dot(&virtual_velocity, &acceleration).scaled(body.mass);
+        let spin = model.kinematics.bodies[b].spin.clone();
+        let angular = scaled(&spin, &body.inertia);
+        let moment = add(&model.rate(&angular), &cross(&spin, &angular));
+        let virtual_spin = with_rates(model, &spin, &rename);
+        power += &dot(&virtual_spin, &moment);
+    }
+    for (k, joint) in model.mechanism.joints.iter().enumerate() {
+        power += &(&Poly::from(n[k]) * &Poly::from(model.coordinates.q[k][2])).scaled(joint.rotor_inertia);
+    }
+    power
+}
+
+fn instant(model: &mut Model, leg: usize) -> Kernel {
+    let (q, qd, qdd) = (model.q(0), model.q(1), model.q(2));
+    let n = symbols(model, "n", q.len());
+    let phi = symbols(model, "phi", model.mechanism.positions());
+    let others = symbols(model, "w", 5);
+    let stance = Stance::new(model, leg);
+    let mut sum = virtual_power(model, leg, &n, &phi);
+    let swing = subtract(&model.foot(1 - leg), &model.foot(leg));
+    let swing_rate = model.rate(&swing);
+    let platform_x = -&model.foot(leg)[0];
+    let terms = [&stance.sigma, &stance.gravity_moment, &swing[1], &platform_x, &swing_rate[1]];
+    for (weight, term) in others.iter().zip(terms) {
+        sum += &(&Poly::from(*weight) * term);
+    }
+    let gradient: Vec<Poly> =
+        q.iter().chain(&qd).chain(&qdd).map(|s| model.ring.derivative(&sum, *s)).collect();
+    let (by_q, rest) = gradient.split_at(q.len());
+    let by_qd = &rest[..q.len()];
+    let (qq, q_qd, q_qdd) = (model.jacobian(by_q, &q), model.jacobian(by_q, &qd), model.jacobian(by_q, &qdd));
+    let qd_qd = model.jacobian(by_qd, &qd);
+    Kernel::new(
+        format!("curvature{}", leg + 1),
+        "Gradient in (q, q̇, q̈) and second derivatives of the sum of all outputs of an instant, each with its weight: \
+         generalized forces of q (n), reaction (phi), and σ, σ̇, swing foot's height, platform's x, swing foot's \
+         vertical velocity (others).",
+    )
+    .input("q", q)
+    .input("qd", qd)
+    .input("qdd", qdd)
+    .input("n", n)
+    .input("phi", phi)
+    .input("others", others)
+    .vector("gradient", gradient, "∂/∂(q, q̇, q̈)")
+    .matrix("q_q", qq, "∂²/∂q∂q")
+    .matrix("q_qd", q_qd, "∂²/∂q∂q̇")
+    .matrix("q_qdd", q_qdd, "∂²/∂q∂q̈")
+    .matrix("qd_qd", qd_qd, "∂²/∂q̇∂q̇")
+}
+
+/// Second derivatives of a touchdown's weighted results, by the adjoint of its linear system.
+fn touchdown(model: &mut Model, leg: usize) -> Kernel {
+    let impact = super::impact::Touchdown::new(model, leg);
+    let (q, qd) = (model.q(0), model.q(1));
+    let xi = symbols(model, "xi", q.len());
+    let outputs = symbols(model, "w", impact.outputs.len());
+    let factors = Factors::new(&mut model.ring, &impact.inertia);
+    let solution = factors.solve(&mut model.ring, &impact.before);
+    let insert: BTreeMap<Var, Poly> = impact.plus.iter().copied().zip(solution).collect();
+
+    let mut direct = Poly::zero();
+    for (weight, output) in outputs.iter().zip(&impact.outputs) {
+        direct += &(&Poly::from(*weight) * output);
+    }
+    // Aq ζ = ξ + ∂(weighted outputs)/∂q̇⁺
+    let right: Vec<Poly> = xi
+        .iter()
+        .zip(&impact.plus)
+        .map(|(x, plus)| {
+            let through = model.ring.derivative(&direct, *plus);
+            &Poly::from(*x) + &model.ring.substitute(&through, &insert)
+        })
+        .collect();
+    let zeta = factors.solve(&mut model.ring, &right);
+    let adjoint = symbols(model, "zeta", q.len());
+    let insert_all: BTreeMap<Var, Poly> = insert.into_iter().chain(adjoint.iter().copied().zip(zeta)).collect();
+    let mut sum = direct;
+    for (z, residual) in adjoint.iter().zip(&impact.residual) {
+        sum += &(&Poly::from(*z) * residual);
+    }
+    let by_q: Vec<Poly> = q.iter().map(|s| model.ring.derivative(&sum, *s)).collect();
+    let mut block = |by: &[Var]| -> Vec<Vec<Poly>> {
+        let raw = model.jacobian(&by_q, by);
+        raw.iter().map(|row| row.iter().map(|p| model.ring.substitute(p, &insert_all)).collect()).collect()
+    };
+    let (qq, q_qd, q_plus) = (block(&q), block(&qd), block(&impact.plus));
+    Kernel::new(
+        format!("touchdown_curvature{}", leg + 1),
+        "Second derivatives of a touchdown's results, weighted: q̇⁺ (xi), then impulse, leaving and landing velocity \
+         (outputs). With J = ∂q̇⁺/∂(q, q̇⁻), the Hessian in (q, q̇⁻) is [q_q, q_qd; ·, 0] + [q_plus; 0] J + its transpose.",
+    )
+    .input("q", q)
+    .input("qd", qd)
+    .input("xi", xi)
+    .input("outputs", outputs)
+    .matrix("q_q", qq, "∂²/∂q∂q")
+    .matrix("q_qd", q_qd, "∂²/∂q∂q̇⁻")
+    .matrix("q_plus", q_plus, "∂²/∂q∂q̇⁺")
+}

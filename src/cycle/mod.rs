@@ -1,0 +1,306 @@
+//! Θ → the whole periodic motion: torques, reactions, criterion, every constraint, exact derivatives (§5).
+//!
+//! Variables, per half step that defines the gait: Q_f, β_f, Q̇_f, β̇_f, interior values of Q, T. The
+//! initial state of a half step follows from the final state of the one before: same configuration,
+//! velocities after the impact, legs renamed where half steps mirror each other (eq. 16, 18, 19).
+//! Equalities: β and β̇ close the cycle (eq. 23, 24, the latter as σ), the swing foot lands, and the
+//! mean speed is the given one.
+//!
+//! `phase` is one half step, `problem` the nonlinear program, `hessian` its second derivatives.
+
+mod hessian;
+mod phase;
+mod problem;
+
+use crate::constraints::{ImpactConstraints, PathConstraint, path_constraints};
+use crate::cost::{Integral, integrate};
+use crate::model::{Description, Gait, HalfSteps};
+use crate::motion::{Costs, Criterion, HalfStep, Motion};
+use crate::stance::Undefined;
+use hessian::Workspace;
+use phase::Phase;
+
+/// Elements per half step: 4 × this + 1 nodes.
+pub const ELEMENTS: usize = 8;
+
+/// The optimization problem of one gait, criterion and speed.
+pub struct Cycle<'a> {
+    gait: &'a dyn Gait,
+    pub criterion: Criterion,
+    /// Mean forward speed, m/s.
+    pub speed: f64,
+    variables: Variables,
+    phases: Vec<Phase>,
+    path: Vec<PathConstraint>,
+    impact: ImpactConstraints,
+    /// Forward travel in all half steps, m.
+    travel: f64,
+
+    // Derivatives of the last linearization, in Θ.
+    cost: f64,
+    cost_gradient: Vec<f64>,
+    travel_gradient: Vec<f64>,
+    equality_rows: Vec<f64>,
+    impact_rows: Vec<f64>,
+    workspace: Workspace,
+}
+
+/// Where the variables of a half step stand among its own.
+#[derive(Clone, Debug)]
+pub struct Variables {
+    orientations: usize,
+    prescribed: usize,
+    unactuated: usize,
+    interior: usize,
+    phases: usize,
+}
+
+impl Variables {
+    pub fn new(d: &Description) -> Variables {
+        Variables {
+            orientations: d.orientations(),
+            prescribed: d.prescribed(),
+            unactuated: d.unactuated,
+            interior: d.polynomial_order - 3,
+            phases: d.phases(),
+        }
+    }
+
+    /// Coordinate `k` of q at the end: Q_f, then β_f.
+    pub fn q(&self, k: usize) -> usize {
+        match k.cmp(&self.unactuated) {
+            std::cmp::Ordering::Less => k,
+            std::cmp::Ordering::Equal => self.prescribed,
+            std::cmp::Ordering::Greater => k - 1,
+        }
+    }
+
+    /// Its rate: Q̇_f, then β̇_f.
+    pub fn qd(&self, k: usize) -> usize {
+        self.orientations + self.q(k)
+    }
+
+    /// Interior value `i` of the j-th prescribed coordinate.
+    pub fn interior(&self, i: usize, j: usize) -> usize {
+        2 * self.orientations + i * self.prescribed + j
+    }
+
+    pub fn duration(&self) -> usize {
+        2 * self.orientations + self.interior * self.prescribed
+    }
+
+    /// Variables of one half step.
+    pub fn per_phase(&self) -> usize {
+        self.duration() + 1
+    }
+
+    pub fn total(&self) -> usize {
+        self.phases * self.per_phase()
+    }
+
+    /// q and q̇ at the end of a half step.
+    pub fn end_state(&self, own: &[f64], q: &mut [f64], qd: &mut [f64]) {
+        for k in 0..self.orientations {
+            q[k] = own[self.q(k)];
+            qd[k] = own[self.qd(k)];
+        }
+    }
+}
+
+/// Which constraint a row is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Label {
+    pub name: String,
+    /// 1-based.
+    pub half_step: usize,
+    /// s.
+    pub time: f64,
+}
+
+impl<'a> Cycle<'a> {
+    pub fn new(gait: &'a dyn Gait, criterion: Criterion, speed: f64) -> Cycle<'a> {
+        let d = gait.description();
+        let variables = Variables::new(d);
+        let phases: Vec<Phase> = (0..d.phases()).map(|k| Phase::new(d, k, ELEMENTS)).collect();
+        let impact = ImpactConstraints::new(d);
+        let n = variables.total();
+        Cycle {
+            gait,
+            criterion,
+            speed,
+            cost: 0.0,
+            cost_gradient: vec![0.0; n],
+            travel_gradient: vec![0.0; n],
+            equality_rows: vec![0.0; n * problem::equalities(d)],
+            impact_rows: vec![0.0; n * d.phases() * impact.count()],
+            workspace: Workspace::new(d, &variables, &phases[0]),
+            variables,
+            phases,
+            path: path_constraints(d),
+            impact,
+            travel: 0.0,
+        }
+    }
+
+    pub fn description(&self) -> &'static Description {
+        self.gait.description()
+    }
+
+    /// The same problem, with collocation nodes only.
+    pub fn again(&self) -> Cycle<'a> {
+        Cycle::new(self.gait, self.criterion, self.speed)
+    }
+
+    /// Number of half steps that define the gait.
+    pub fn phases(&self) -> usize {
+        self.phases.len()
+    }
+
+    /// Number of instants looked at in a half step.
+    pub fn nodes(&self, phase: usize) -> usize {
+        self.phases[phase].mesh.nodes.len()
+    }
+
+    /// Instant `node` as a share of its half step.
+    pub fn instant(&self, phase: usize, node: usize) -> f64 {
+        self.phases[phase].mesh.nodes[node].0
+    }
+
+    /// Number of path constraints.
+    pub fn path_count(&self) -> usize {
+        self.path.len()
+    }
+
+    /// Scaled value of a path constraint in the last simulated motion.
+    pub fn path_value(&self, phase: usize, node: usize, constraint: usize) -> f64 {
+        self.path[constraint].value(self.phases[phase].instants.row(node))
+    }
+
+    /// Number of variables Θ.
+    pub fn dimension(&self) -> usize {
+        self.variables.total()
+    }
+
+    /// Natural size of each variable: rad, rad/s, s.
+    pub fn scale(&self) -> Vec<f64> {
+        let v = &self.variables;
+        let mut scale = Vec::new();
+        for _ in 0..v.phases {
+            scale.extend(std::iter::repeat_n(0.3, v.orientations));
+            scale.extend(std::iter::repeat_n(3.0, v.orientations));
+            scale.extend(std::iter::repeat_n(0.3, v.prescribed * v.interior));
+            scale.push(0.1);
+        }
+        scale
+    }
+
+    /// Looks at further instants (shares of each half step) besides the collocation nodes.
+    pub fn set_instants(&mut self, instants: &[Vec<f64>]) {
+        let d = self.description();
+        for (phase, list) in self.phases.iter_mut().zip(instants) {
+            phase.set_instants(d, list);
+        }
+    }
+
+    /// The half step before `k`.
+    fn before(&self, k: usize) -> usize {
+        (k + self.phases.len() - 1) % self.phases.len()
+    }
+
+    /// Evaluates the motion of Θ.
+    ///
+    /// # Errors
+    /// If the equations admit no such motion.
+    pub fn simulate(&mut self, theta: &[f64]) -> Result<(), Undefined> {
+        let d = self.description();
+        let own = |k: usize| &theta[k * self.variables.per_phase()..][..self.variables.per_phase()];
+        for (k, phase) in self.phases.iter_mut().enumerate() {
+            phase.end(self.gait, &self.variables, own(k));
+        }
+        self.travel = 0.0;
+        for k in 0..self.phases.len() {
+            let before = self.before(k);
+            for row in 0..d.orientations() {
+                let (from, sign) = renamed(d, row);
+                let (q, qd) = (self.phases[before].q_end[from], self.phases[before].touchdown[from]);
+                self.phases[k].q_start[row] = sign * q;
+                self.phases[k].qd_start[row] = sign * qd;
+            }
+            let phase = &mut self.phases[k];
+            phase.set_parameters(self.gait, &self.variables, own(k));
+            let t = phase.duration();
+            if t.is_nan() || t < 1e-4 {
+                return Err(Undefined::NotFinite);
+            }
+            phase.stance.integrate(self.gait, phase.leg, &phase.mesh, &phase.parameters)?;
+            phase.instants.evaluate(self.gait, phase.leg, &phase.mesh, &phase.stance, &phase.parameters);
+            integrate(self.criterion, d, &phase.mesh, &phase.instants, &mut phase.cost);
+            phase.travel = phase.instants.platform(d, phase.last())[0] - phase.instants.platform(d, 0)[0];
+            self.travel += phase.travel;
+        }
+        Ok(())
+    }
+
+    /// Integral of the criterion's integrand over the whole motion.
+    fn work(&self) -> f64 {
+        self.phases.iter().map(|p| p.duration() * p.cost.value).sum()
+    }
+
+    /// Both criteria of the last simulated motion.
+    pub fn costs(&self) -> Costs {
+        let d = self.description();
+        let of = |criterion| {
+            let mut integral = Integral::default();
+            let mut sum = 0.0;
+            for p in &self.phases {
+                integrate(criterion, d, &p.mesh, &p.instants, &mut integral);
+                sum += p.duration() * integral.value;
+            }
+            sum / self.travel
+        };
+        Costs { energy: of(Criterion::Energy), torque: of(Criterion::Torque) }
+    }
+
+    /// The last simulated motion as numbers.
+    pub fn motion(&self) -> Motion {
+        let d = self.description();
+        let prescribed = |values: &[f64]| -> Vec<f64> { (0..d.prescribed()).map(|j| values[d.prescribed_index(j)]).collect() };
+        let half_step = |p: &Phase| HalfStep {
+            duration: p.duration(),
+            q_initial: prescribed(&p.q_start),
+            qd_initial: prescribed(&p.qd_start),
+            q_interior: (0..p.layout.per_joint - 4)
+                .map(|i| (0..d.prescribed()).map(|j| p.parameters[p.layout.joint(j, 2 + i)]).collect())
+                .collect(),
+            q_final: prescribed(&p.q_end),
+            qd_final: prescribed(&p.qd_end),
+            beta_initial: p.q_start[d.unactuated],
+            betad_initial: p.qd_start[d.unactuated],
+            beta_final: p.q_end[d.unactuated],
+            betad_final: p.qd_end[d.unactuated],
+        };
+        Motion { half_steps: self.phases.iter().map(half_step).collect() }
+    }
+
+    /// Θ of a motion.
+    pub fn theta(&self, motion: &Motion) -> Vec<f64> {
+        let mut theta = Vec::with_capacity(self.dimension());
+        for h in &motion.half_steps {
+            theta.extend_from_slice(&h.q_final);
+            theta.push(h.beta_final);
+            theta.extend_from_slice(&h.qd_final);
+            theta.push(h.betad_final);
+            theta.extend(h.q_interior.iter().flatten());
+            theta.push(h.duration);
+        }
+        theta
+    }
+}
+
+/// Where coordinate `k` comes from after a half step: index and sign.
+fn renamed(d: &Description, k: usize) -> (usize, f64) {
+    match d.half_steps {
+        HalfSteps::Mirrored => d.swapped(k),
+        HalfSteps::Distinct => (k, 1.0),
+    }
+}

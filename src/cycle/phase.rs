@@ -1,0 +1,198 @@
+//! One half step that defines the gait, and how its parameters depend on Θ.
+
+use super::Variables;
+use crate::cost::Integral;
+use crate::instant::Instants;
+use crate::model::{Description, Gait};
+use crate::stance::{Layout, Mesh, Stance};
+
+/// State of a half step: what the last simulation left, and the derivatives of the last linearization.
+pub struct Phase {
+    /// Stance leg.
+    pub leg: usize,
+    pub mesh: Mesh,
+    pub stance: Stance,
+    pub instants: Instants,
+    pub layout: Layout,
+    /// Local parameters: see `stance`.
+    pub parameters: Vec<f64>,
+    pub cost: Integral,
+    /// Configuration and velocity at its start, after the impact.
+    pub q_start: Vec<f64>,
+    pub qd_start: Vec<f64>,
+    /// Wanted configuration and velocity at its end, before the impact.
+    pub q_end: Vec<f64>,
+    pub qd_end: Vec<f64>,
+    /// `touchdown` and `placement` kernels at the end.
+    pub touchdown: Vec<f64>,
+    pub placement: Vec<f64>,
+    /// `momentum` kernel: σ and its gradient in (q, q̇), at the start and at the wanted end.
+    pub momentum_start: Vec<f64>,
+    pub momentum_end: Vec<f64>,
+    /// Forward travel, m.
+    pub travel: f64,
+
+    /// ∂parameters/∂Θ, one row per parameter.
+    pub by_theta: Vec<f64>,
+    /// Quantities at the linearized point (a trial point must not disturb its derivatives).
+    pub linearized: Vec<f64>,
+    pub travel_p: Vec<f64>,
+    /// ∂(q_start, q̇_start)/∂Θ, one row each.
+    pub start_by_theta: Vec<f64>,
+    scratch: Vec<f64>,
+}
+
+impl Phase {
+    pub fn new(d: &Description, leg: usize, elements: usize) -> Phase {
+        let mesh = Mesh::new(elements, d.polynomial_order);
+        let layout = Layout::new(d, &mesh.basis);
+        let (nq, nc) = (d.orientations(), d.positions());
+        let n = Variables::new(d).total();
+        let instants = Instants::new(d, &mesh);
+        let z = |count: usize| vec![0.0; count];
+        Phase {
+            leg,
+            stance: Stance::new(d, &mesh, leg),
+            linearized: instants.values.clone(),
+            instants,
+            layout,
+            parameters: z(layout.len()),
+            cost: Integral::default(),
+            q_start: z(nq),
+            qd_start: z(nq),
+            q_end: z(nq),
+            qd_end: z(nq),
+            touchdown: z(nq + nc + 2 + (nq + nc + 2) * 2 * nq),
+            placement: z(2 * nc + 2 * nc * nq),
+            momentum_start: z(1 + 2 * nq),
+            momentum_end: z(1 + 2 * nq),
+            travel: 0.0,
+            by_theta: z(layout.len() * n),
+            travel_p: z(layout.len()),
+            start_by_theta: z(2 * nq * n),
+            scratch: z(layout.len()),
+            mesh,
+        }
+    }
+
+    /// Looks at these further instants besides the collocation nodes.
+    pub fn set_instants(&mut self, d: &Description, instants: &[f64]) {
+        self.mesh.set_instants(instants);
+        self.stance = Stance::new(d, &self.mesh, self.leg);
+        self.instants = Instants::new(d, &self.mesh);
+        self.linearized = self.instants.values.clone();
+    }
+
+    pub fn duration(&self) -> f64 {
+        self.parameters[self.layout.duration()]
+    }
+
+    /// Last collocation node.
+    pub fn last(&self) -> usize {
+        self.mesh.collocation() - 1
+    }
+
+    /// Quantities of a node at the linearized point.
+    pub fn linearized(&self, node: usize) -> &[f64] {
+        let count = self.instants.quantities.len();
+        &self.linearized[node * count..][..count]
+    }
+
+    /// Row of ∂(q̇⁺, impulse, leaving, landing)/∂(q, q̇⁻) at the end.
+    pub fn touchdown_row(&self, d: &Description, row: usize) -> &[f64] {
+        let (nq, nc) = (d.orientations(), d.positions());
+        &self.touchdown[nq + nc + 2 + row * 2 * nq..][..2 * nq]
+    }
+
+    /// Impulse and leaving velocity at the end.
+    pub fn impact(&self, d: &Description) -> &[f64] {
+        &self.touchdown[d.orientations()..][..d.positions() + 1]
+    }
+
+    /// ∂(vertical position of the swing foot)/∂q at the wanted end.
+    pub fn landing_gradient(&self, d: &Description) -> &[f64] {
+        let (nq, nc) = (d.orientations(), d.positions());
+        &self.placement[2 * nc + nc * nq + nq..][..nq]
+    }
+
+    /// Evaluates what depends on the wanted end alone: the impact there, the foot's height, σ.
+    pub fn end(&mut self, gait: &dyn Gait, variables: &Variables, own: &[f64]) {
+        variables.end_state(own, &mut self.q_end, &mut self.qd_end);
+        gait.touchdown(1 - self.leg, &self.q_end, &self.qd_end, &mut self.touchdown);
+        gait.placement(self.leg, &self.q_end, &mut self.placement);
+        gait.momentum(self.leg, &self.q_end, &self.qd_end, &mut self.momentum_end);
+    }
+
+    /// Local parameters from the half step's own variables and its start.
+    pub fn set_parameters(&mut self, gait: &dyn Gait, variables: &Variables, own: &[f64]) {
+        let d = gait.description();
+        gait.momentum(self.leg, &self.q_start, &self.qd_start, &mut self.momentum_start);
+        let layout = self.layout;
+        for j in 0..layout.prescribed {
+            let index = d.prescribed_index(j);
+            let p = &mut self.parameters[layout.joint(j, 0)..][..layout.per_joint];
+            p[0] = self.q_start[index];
+            p[1] = self.qd_start[index];
+            for i in 0..layout.per_joint - 4 {
+                p[2 + i] = own[variables.interior(i, j)];
+            }
+            p[layout.per_joint - 2] = own[variables.q(index)];
+            p[layout.per_joint - 1] = own[variables.qd(index)];
+        }
+        self.parameters[layout.duration()] = own[variables.duration()];
+        self.parameters[layout.beta()] = self.q_start[d.unactuated];
+        self.parameters[layout.sigma()] = self.momentum_start[0];
+    }
+
+    /// Derivatives in the local parameters.
+    pub fn differentiate(&mut self, gait: &dyn Gait) {
+        let d = gait.description();
+        self.stance.differentiate(gait, self.leg, &self.mesh, &self.parameters);
+        self.instants.differentiate(d, &self.mesh, &self.stance, &self.parameters);
+        self.linearized.copy_from_slice(&self.instants.values);
+        let last = self.last();
+        self.instants.platform_x_gradient(d, &self.stance, 0, &mut self.scratch);
+        self.instants.platform_x_gradient(d, &self.stance, last, &mut self.travel_p);
+        for (end, start) in self.travel_p.iter_mut().zip(&self.scratch) {
+            *end -= start;
+        }
+    }
+
+    /// ∂parameters/∂Θ, once `start_by_theta` is known; `own` is where this half step's variables begin.
+    pub fn differentiate_parameters(&mut self, d: &Description, variables: &Variables, own: usize) {
+        let n = variables.total();
+        let nq = d.orientations();
+        let layout = self.layout;
+        self.by_theta.fill(0.0);
+        let row = |local: usize| local * n..(local + 1) * n;
+        for j in 0..layout.prescribed {
+            let index = d.prescribed_index(j);
+            self.by_theta[row(layout.joint(j, 0))].copy_from_slice(&self.start_by_theta[row(index)]);
+            self.by_theta[row(layout.joint(j, 1))].copy_from_slice(&self.start_by_theta[row(nq + index)]);
+            for i in 0..layout.per_joint - 4 {
+                self.by_theta[layout.joint(j, 2 + i) * n + own + variables.interior(i, j)] = 1.0;
+            }
+            self.by_theta[layout.joint(j, layout.per_joint - 2) * n + own + variables.q(index)] = 1.0;
+            self.by_theta[layout.joint(j, layout.per_joint - 1) * n + own + variables.qd(index)] = 1.0;
+        }
+        self.by_theta[layout.duration() * n + own + variables.duration()] = 1.0;
+        self.by_theta[row(layout.beta())].copy_from_slice(&self.start_by_theta[row(d.unactuated)]);
+        for (k, gradient) in self.momentum_start[1..].iter().enumerate() {
+            for (s, c) in self.by_theta[row(layout.sigma())].iter_mut().zip(&self.start_by_theta[row(k)]) {
+                *s += gradient * c;
+            }
+        }
+    }
+
+    /// `row += scale · localᵀ ∂parameters/∂Θ`.
+    pub fn project(&self, local: &[f64], scale: f64, row: &mut [f64]) {
+        for (g, by) in local.iter().zip(self.by_theta.chunks(row.len())) {
+            let factor = scale * g;
+            if factor != 0.0 {
+                for (r, b) in row.iter_mut().zip(by) {
+                    *r += factor * b;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,323 @@
+//! The cycle as a nonlinear program.
+//!
+//! Path constraints are many and their gradients short (local parameters), so a row is projected to Θ
+//! only when it is asked for. Everything that rows need is kept from the last linearization: trial
+//! points in between do not disturb it.
+
+use super::{Cycle, Label, renamed};
+use crate::constraints::PathConstraint;
+use crate::model::Description;
+use crate::sqp::{self, Problem, Undefined, Values};
+
+/// Equalities of each half step: closure of β and of σ, touchdown.
+const CLOSURE: usize = 3;
+
+/// Number of equalities: those of each half step, and the mean speed.
+pub fn equalities(d: &Description) -> usize {
+    CLOSURE * d.phases() + 1
+}
+
+/// What an inequality row is.
+enum Row {
+    Path { phase: usize, node: usize, constraint: usize },
+    Impact { phase: usize, constraint: usize },
+}
+
+impl Cycle<'_> {
+    /// Path constraints that are imposed at a node.
+    fn path_at(&self, node: usize) -> impl Iterator<Item = &PathConstraint> {
+        self.path.iter().filter(move |c| node > 0 || c.at_start)
+    }
+
+    /// Indices of the path constraints that are imposed at the first node.
+    fn at_start(&self) -> impl Iterator<Item = usize> + '_ {
+        self.path.iter().enumerate().filter(|(_, c)| c.at_start).map(|(k, _)| k)
+    }
+
+    /// Calls `visit(phase, node, constraint, row)` for every path row with a multiplier.
+    pub(super) fn weighted_path_rows(&self, mu: &[f64], mut visit: impl FnMut(usize, usize, &PathConstraint, f64)) {
+        let mut i = 0;
+        for (k, phase) in self.phases.iter().enumerate() {
+            for node in 0..phase.mesh.nodes.len() {
+                for constraint in self.path_at(node) {
+                    if mu[i] != 0.0 {
+                        visit(k, node, constraint, mu[i]);
+                    }
+                    i += 1;
+                }
+            }
+        }
+    }
+
+    /// Index of the first impact row.
+    pub(super) fn first_impact_row(&self) -> usize {
+        let at_start = self.at_start().count();
+        self.phases.iter().map(|p| at_start + (p.mesh.nodes.len() - 1) * self.path.len()).sum()
+    }
+
+    fn locate(&self, i: usize) -> Row {
+        let at_start = self.at_start().count();
+        let mut rest = i;
+        for (phase, p) in self.phases.iter().enumerate() {
+            if rest < at_start {
+                return Row::Path { phase, node: 0, constraint: self.at_start().nth(rest).unwrap_or(0) };
+            }
+            rest -= at_start;
+            let others = (p.mesh.nodes.len() - 1) * self.path.len();
+            if rest < others {
+                return Row::Path { phase, node: 1 + rest / self.path.len(), constraint: rest % self.path.len() };
+            }
+            rest -= others;
+        }
+        Row::Impact { phase: rest / self.impact.count(), constraint: rest % self.impact.count() }
+    }
+
+    /// Which constraint inequality row `i` is, in words.
+    pub fn label(&self, i: usize) -> Label {
+        match self.locate(i) {
+            Row::Path { phase, node, constraint } => {
+                let p = &self.phases[phase];
+                let time = p.mesh.nodes[node].0 * p.duration();
+                Label { name: self.path[constraint].name.clone(), half_step: phase + 1, time }
+            }
+            Row::Impact { phase, constraint } => {
+                Label { name: self.impact.name(constraint).into(), half_step: phase + 1, time: self.phases[phase].duration() }
+            }
+        }
+    }
+
+    /// Which equality `i` is, in words.
+    pub fn equality_label(&self, i: usize) -> Label {
+        let names = ["closure of β", "closure of σ", "touchdown of the swing foot"];
+        match self.phases.get(i / CLOSURE) {
+            Some(p) => Label { name: names[i % CLOSURE].into(), half_step: i / CLOSURE + 1, time: p.duration() },
+            None => Label { name: "mean speed".into(), half_step: self.phases.len(), time: 0.0 },
+        }
+    }
+
+    /// Which variable's bound `i` is, in words: only durations are bounded.
+    pub fn bound_label(&self, i: usize) -> Label {
+        Label { name: "duration of the half step".into(), half_step: i / self.variables.per_phase() + 1, time: 0.0 }
+    }
+
+    /// ∂(q_start, q̇_start)/∂Θ of every half step, from the impact's Jacobian.
+    fn differentiate_starts(&mut self) {
+        let d = self.description();
+        let (nq, n) = (d.orientations(), self.variables.total());
+        for k in 0..self.phases.len() {
+            let before = self.before(k);
+            let column = before * self.variables.per_phase();
+            let mut table = std::mem::take(&mut self.phases[k].start_by_theta);
+            table.fill(0.0);
+            for row in 0..nq {
+                let (from, sign) = renamed(d, row);
+                table[row * n + column + self.variables.q(from)] = sign;
+                let jacobian = self.phases[before].touchdown_row(d, from);
+                for j in 0..nq {
+                    table[(nq + row) * n + column + self.variables.q(j)] = sign * jacobian[j];
+                    table[(nq + row) * n + column + self.variables.qd(j)] = sign * jacobian[nq + j];
+                }
+            }
+            self.phases[k].start_by_theta = table;
+        }
+    }
+
+    /// d(work/travel) = (d work − cost d travel)/travel
+    fn differentiate_cost(&mut self) {
+        self.cost = self.work() / self.travel;
+        self.cost_gradient.fill(0.0);
+        self.travel_gradient.fill(0.0);
+        let local = &mut self.workspace.local;
+        for p in &self.phases {
+            let t = p.duration();
+            local.fill(0.0);
+            for (node, quantity, partial) in &p.cost.partials {
+                for (l, g) in local.iter_mut().zip(p.instants.gradient(*node, *quantity)) {
+                    *l += t * partial * g;
+                }
+            }
+            local[p.layout.duration()] += p.cost.value;
+            for (l, g) in local.iter_mut().zip(&p.travel_p) {
+                *l -= self.cost * g;
+            }
+            p.project(local, 1.0 / self.travel, &mut self.cost_gradient);
+            p.project(&p.travel_p, 1.0, &mut self.travel_gradient);
+        }
+    }
+
+    fn differentiate_equalities(&mut self) {
+        let d = self.description();
+        let (nq, n, m) = (d.orientations(), self.variables.total(), self.variables.per_phase());
+        self.equality_rows.fill(0.0);
+        let mut rows = self.equality_rows.chunks_mut(n);
+        for (k, p) in self.phases.iter().enumerate() {
+            let np = p.layout.len();
+            let last = p.last() * np;
+            let own = |index: usize| k * m + index;
+            if let Some(row) = rows.next() {
+                p.project(&p.stance.beta_p[last..last + np], 1.0, row);
+                row[own(self.variables.q(d.unactuated))] -= 1.0;
+            }
+            if let Some(row) = rows.next() {
+                p.project(&p.stance.sigma_p[last..last + np], 1.0, row);
+                for j in 0..nq {
+                    row[own(self.variables.q(j))] -= p.momentum_end[1 + j];
+                    row[own(self.variables.qd(j))] -= p.momentum_end[1 + nq + j];
+                }
+            }
+            if let Some(row) = rows.next() {
+                for (j, g) in p.landing_gradient(d).iter().enumerate() {
+                    row[own(self.variables.q(j))] += g / d.leg_length();
+                }
+            }
+        }
+        if let Some(row) = rows.next() {
+            for (r, g) in row.iter_mut().zip(&self.travel_gradient) {
+                *r = g / d.leg_length();
+            }
+            for k in 0..self.phases.len() {
+                row[k * m + self.variables.duration()] -= self.speed / d.leg_length();
+            }
+        }
+    }
+
+    fn differentiate_impacts(&mut self) {
+        let d = self.description();
+        let (nq, n, m) = (d.orientations(), self.variables.total(), self.variables.per_phase());
+        self.impact_rows.fill(0.0);
+        let count = self.impact.count();
+        for (k, p) in self.phases.iter().enumerate() {
+            for c in 0..count {
+                let row = &mut self.impact_rows[(k * count + c) * n..][..n];
+                self.impact.partials(c, p.impact(d), |i, partial| {
+                    let jacobian = p.touchdown_row(d, nq + i);
+                    for j in 0..nq {
+                        row[k * m + self.variables.q(j)] += partial * jacobian[j];
+                        row[k * m + self.variables.qd(j)] += partial * jacobian[nq + j];
+                    }
+                });
+            }
+        }
+    }
+}
+
+impl Problem for Cycle<'_> {
+    fn variables(&self) -> usize {
+        self.dimension()
+    }
+
+    fn equalities(&self) -> usize {
+        equalities(self.description())
+    }
+
+    fn inequalities(&self) -> usize {
+        self.first_impact_row() + self.phases.len() * self.impact.count()
+    }
+
+    fn bounds(&self, lower: &mut [f64], upper: &mut [f64]) {
+        let [shortest, longest] = self.description().limits.half_step_duration;
+        let m = self.variables.per_phase();
+        for k in 0..self.phases.len() {
+            lower[k * m + self.variables.duration()] = shortest;
+            upper[k * m + self.variables.duration()] = longest;
+        }
+    }
+
+    fn evaluate(&mut self, x: &[f64], out: &mut Values) -> Result<(), Undefined> {
+        self.simulate(x).map_err(|_| sqp::Undefined)?;
+        let d = self.description();
+        out.objective = self.work() / self.travel;
+        let mut duration = 0.0;
+        for (k, p) in self.phases.iter().enumerate() {
+            let equalities = &mut out.equalities[k * CLOSURE..][..CLOSURE];
+            equalities[0] = p.stance.beta[p.last()] - p.q_end[d.unactuated];
+            equalities[1] = p.stance.sigma[p.last()] - p.momentum_end[0];
+            equalities[2] = p.placement[d.positions() + 1] / d.leg_length();
+            duration += p.duration();
+        }
+        out.equalities[CLOSURE * self.phases.len()] = (self.travel - self.speed * duration) / d.leg_length();
+        let mut slots = out.inequalities.iter_mut();
+        for p in &self.phases {
+            for node in 0..p.mesh.nodes.len() {
+                let y = p.instants.row(node);
+                for (constraint, slot) in self.path_at(node).zip(&mut slots) {
+                    *slot = constraint.value(y);
+                }
+            }
+        }
+        for p in &self.phases {
+            for (c, slot) in (0..self.impact.count()).zip(&mut slots) {
+                *slot = self.impact.value(c, p.impact(d));
+            }
+        }
+        Ok(())
+    }
+
+    fn linearize(&mut self, _: &[f64]) -> Result<(), Undefined> {
+        let d = self.description();
+        self.differentiate_starts();
+        for (k, phase) in self.phases.iter_mut().enumerate() {
+            phase.differentiate_parameters(d, &self.variables, k * self.variables.per_phase());
+            phase.differentiate(self.gait);
+        }
+        self.differentiate_cost();
+        self.differentiate_equalities();
+        self.differentiate_impacts();
+        Ok(())
+    }
+
+    fn gradient(&self, gradient: &mut [f64]) {
+        gradient.copy_from_slice(&self.cost_gradient);
+    }
+
+    fn equality_row(&self, i: usize, row: &mut [f64]) {
+        row.copy_from_slice(&self.equality_rows[i * row.len()..][..row.len()]);
+    }
+
+    fn inequality_row(&self, i: usize, row: &mut [f64]) {
+        match self.locate(i) {
+            Row::Path { phase, node, constraint } => {
+                let p = &self.phases[phase];
+                row.fill(0.0);
+                self.path[constraint].partials(p.linearized(node), |quantity, partial| {
+                    p.project(p.instants.gradient(node, quantity), partial, row);
+                });
+            }
+            Row::Impact { phase, constraint } => {
+                let index = phase * self.impact.count() + constraint;
+                row.copy_from_slice(&self.impact_rows[index * row.len()..][..row.len()]);
+            }
+        }
+    }
+
+    fn inequality_directions(&self, direction: &[f64], out: &mut [f64]) {
+        let n = direction.len();
+        let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };
+        let mut slots = out.iter_mut();
+        let mut local = smallvec::SmallVec::<[f64; 64]>::new();
+        let mut change = smallvec::SmallVec::<[f64; 32]>::new();
+        for p in &self.phases {
+            // The direction in local parameters, then in the quantities of each instant.
+            local.clear();
+            local.extend(p.by_theta.chunks(n).map(|row| dot(row, direction)));
+            for node in 0..p.mesh.nodes.len() {
+                change.clear();
+                change.extend(p.instants.gradients(node).chunks(local.len()).map(|g| dot(g, &local)));
+                let y = p.linearized(node);
+                for (constraint, slot) in self.path_at(node).zip(&mut slots) {
+                    let mut sum = 0.0;
+                    constraint.partials(y, |quantity, partial| sum += partial * change[quantity]);
+                    *slot = sum;
+                }
+            }
+        }
+        for (row, slot) in self.impact_rows.chunks(n).zip(slots) {
+            *slot = dot(row, direction);
+        }
+    }
+
+    fn hessian(&mut self, equality_multipliers: &[f64], inequality_multipliers: &[f64], hessian: &mut [f64]) -> bool {
+        self.lagrangian_hessian(equality_multipliers, inequality_multipliers, hessian);
+        true
+    }
+}
