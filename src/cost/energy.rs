@@ -30,8 +30,27 @@ pub fn integrate(description: &Description, mesh: &Mesh, instants: &Instants, in
             }
             for (root, slope) in roots {
                 let shape = mesh.lobatto.values(root);
-                integral.kinks.push(Kink { joint: j, first: node(0), shape, weight: 2.0 * share / slope.abs() });
+                integral.kinks.push(Kink { joint: j, first: node(0), shape, weight: 2.0 * share / slope.abs(), slope });
             }
+        }
+    }
+}
+
+/// √(power² + ε²) − ε by the quadrature of the collocation nodes: what a search may start with.
+pub fn integrate_smooth(epsilon: f64, description: &Description, mesh: &Mesh, instants: &Instants, integral: &mut Integral) {
+    let y = instants.quantities;
+    for (node, weight) in mesh.weights.iter().copied().enumerate() {
+        for j in 0..description.joints() {
+            let (torque, rate) = (instants.value(node, y.torque(j)), instants.value(node, y.rate(j)));
+            let power = torque * rate;
+            let root = (power * power + epsilon * epsilon).sqrt();
+            integral.value += weight * (root - epsilon);
+            let (first, second) = (weight * power / root, weight * epsilon * epsilon / (root * root * root));
+            integral.partials.push((node, y.torque(j), first * rate));
+            integral.partials.push((node, y.rate(j), first * torque));
+            integral.seconds.push((node, y.torque(j), y.torque(j), second * rate * rate));
+            integral.seconds.push((node, y.rate(j), y.rate(j), second * torque * torque));
+            integral.seconds.push((node, y.torque(j), y.rate(j), second * power + first));
         }
     }
 }

@@ -29,16 +29,28 @@ pub struct Kink {
     /// Values of the Lagrange polynomials at the root.
     pub shape: [f64; crate::lgl::NODES],
     pub weight: f64,
+    /// Slope of the power at the root, per element.
+    pub slope: f64,
 }
 
 /// Integral of the integrand of `criterion` over one half step, per unit of s (multiply by T).
-pub fn integrate(criterion: Criterion, description: &Description, mesh: &Mesh, instants: &Instants, integral: &mut Integral) {
+///
+/// `smoothing` (W) rounds the kinks of |power| off, as √(power² + smoothing²) − smoothing; 0 for the criterion itself.
+pub fn integrate(
+    criterion: Criterion,
+    smoothing: f64,
+    description: &Description,
+    mesh: &Mesh,
+    instants: &Instants,
+    integral: &mut Integral,
+) {
     integral.value = 0.0;
     integral.partials.clear();
     integral.seconds.clear();
     integral.kinks.clear();
     match criterion {
         Criterion::Torque => torque::integrate(description, mesh, instants, integral),
+        Criterion::Energy if smoothing > 0.0 => energy::integrate_smooth(smoothing, description, mesh, instants, integral),
         Criterion::Energy => energy::integrate(description, mesh, instants, integral),
     }
 }

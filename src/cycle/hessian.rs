@@ -15,6 +15,9 @@ use crate::lgl::NODES;
 use crate::model::{Description, Gait};
 use crate::stance::Stance;
 
+/// Share of an element per change of power over slope, beyond which a kink's curvature is averaged.
+const REACH: f64 = 1.0;
+
 /// Equalities of each half step, in the order of `problem`.
 const CLOSURE: usize = 3;
 
@@ -23,6 +26,8 @@ pub struct Workspace {
     /// A row of local parameters.
     pub local: Vec<f64>,
     phase: PhaseWork,
+    /// The last step, in local parameters.
+    reach: Vec<f64>,
     /// Hessian of one half step in its local parameters, and half its projection.
     h_local: Vec<f64>,
     half: Vec<f64>,
@@ -73,6 +78,7 @@ impl Workspace {
                 v: [z(np), z(np), z(np)],
                 scratch: z(np),
             },
+            reach: z(np),
             h_local: z(np * np),
             half: z(np * n),
             touchdown: z(3 * nq * nq),
@@ -164,6 +170,9 @@ impl Cycle<'_> {
         }
         // Products of quantities: squares of torques, torque times rate, cones.
         let scale = t / self.travel;
+        for (slot, row) in work.reach.iter_mut().zip(p.by_theta.chunks(self.moved.len())) {
+            *slot = dot(row, &self.moved);
+        }
         for (node, a, b, second) in &p.cost.seconds {
             let (ga, gb) = (p.instants.gradient(*node, *a), p.instants.gradient(*node, *b));
             let weight = if a == b { 0.5 } else { 1.0 } * second * scale;
@@ -181,7 +190,11 @@ impl Cycle<'_> {
                     *slot += shape * (y[rate] * a + y[torque] * b);
                 }
             }
-            rank_two(h, g, g, 0.5 * kink.weight * scale);
+            // A root that the next step moves out of sight bends the cost less than its slope says:
+            // the last step tells how far the power at the root may change.
+            let change = dot(g, &work.reach);
+            let weight = kink.weight / (1.0 + (REACH * change / kink.slope).powi(2)).sqrt();
+            rank_two(h, g, g, 0.5 * weight * scale);
         }
         self.weighted_path_rows(mu, |phase, node, constraint, multiplier| {
             if phase == k {
@@ -561,6 +574,7 @@ impl Workspace {
         Workspace {
             local: Vec::new(),
             phase,
+            reach: Vec::new(),
             h_local: Vec::new(),
             half: Vec::new(),
             touchdown: Vec::new(),
@@ -571,6 +585,10 @@ impl Workspace {
             rows: Vec::new(),
         }
     }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
 fn dot3(a: &[f64; 3], b: &[f64; 3]) -> f64 {

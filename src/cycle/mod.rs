@@ -29,6 +29,8 @@ pub struct Cycle<'a> {
     pub criterion: Criterion,
     /// Mean forward speed, m/s.
     pub speed: f64,
+    /// Rounds off the kinks of |power|, W; 0 for the criterion itself.
+    pub smoothing: f64,
     variables: Variables,
     phases: Vec<Phase>,
     path: Vec<PathConstraint>,
@@ -37,6 +39,9 @@ pub struct Cycle<'a> {
     travel: f64,
 
     // Derivatives of the last linearization, in Θ.
+    linearized: Vec<f64>,
+    /// How far it lies from the one before: the reach of the model that is built from it.
+    moved: Vec<f64>,
     cost: f64,
     cost_gradient: Vec<f64>,
     travel_gradient: Vec<f64>,
@@ -128,6 +133,9 @@ impl<'a> Cycle<'a> {
             gait,
             criterion,
             speed,
+            smoothing: 0.0,
+            linearized: Vec::new(),
+            moved: vec![0.0; n],
             cost: 0.0,
             cost_gradient: vec![0.0; n],
             travel_gradient: vec![0.0; n],
@@ -234,7 +242,7 @@ impl<'a> Cycle<'a> {
             }
             phase.stance.integrate(self.gait, phase.leg, &phase.mesh, &phase.parameters)?;
             phase.instants.evaluate(self.gait, phase.leg, &phase.mesh, &phase.stance, &phase.parameters);
-            integrate(self.criterion, d, &phase.mesh, &phase.instants, &mut phase.cost);
+            integrate(self.criterion, self.smoothing, d, &phase.mesh, &phase.instants, &mut phase.cost);
             phase.travel = phase.instants.platform(d, phase.last())[0] - phase.instants.platform(d, 0)[0];
             self.travel += phase.travel;
         }
@@ -253,7 +261,7 @@ impl<'a> Cycle<'a> {
             let mut integral = Integral::default();
             let mut sum = 0.0;
             for p in &self.phases {
-                integrate(criterion, d, &p.mesh, &p.instants, &mut integral);
+                integrate(criterion, 0.0, d, &p.mesh, &p.instants, &mut integral);
                 sum += p.duration() * integral.value;
             }
             sum / self.travel

@@ -253,8 +253,15 @@ impl Problem for Cycle<'_> {
         Ok(())
     }
 
-    fn linearize(&mut self, _: &[f64]) -> Result<(), Undefined> {
+    fn linearize(&mut self, x: &[f64]) -> Result<(), Undefined> {
         let d = self.description();
+        if self.linearized.is_empty() {
+            self.linearized.extend_from_slice(x);
+        }
+        for ((moved, old), new) in self.moved.iter_mut().zip(&mut self.linearized).zip(x) {
+            *moved = new - *old;
+            *old = *new;
+        }
         self.differentiate_starts();
         for (k, phase) in self.phases.iter_mut().enumerate() {
             phase.differentiate_parameters(d, &self.variables, k * self.variables.per_phase());

@@ -8,7 +8,7 @@ const SUFFICIENT: f64 = 1e-4;
 /// Share of the linearized violation's decrease that the model of φ must show.
 const SHARE: f64 = 0.1;
 /// How often the penalty may come down. A finite number, so that one merit function governs in the end.
-const LOWERINGS: usize = 10;
+const LOWERINGS: usize = 40;
 
 /// Violation, in units of the first point's (or one), that no step may reach from below (as in Wächter & Biegler 2006).
 const RUNAWAY: f64 = 1e4;
@@ -66,8 +66,8 @@ impl Merit {
     /// Lowers a penalty that a bad spell has driven far beyond the largest multiplier: it would tie the iterates to every
     /// bend of the constraints.
     pub(super) fn relax(&mut self, largest_multiplier: f64) {
-        let enough = (10.0 * largest_multiplier).max(1.0);
-        if self.lowerings > 0 && self.high > 10.0 * enough {
+        let enough = (2.0 * largest_multiplier).max(1.0);
+        if self.lowerings > 0 && self.high > 2.0 * enough {
             self.high = enough;
             self.low = self.low.min(enough);
             self.lowerings -= 1;

@@ -24,6 +24,9 @@ const DEPENDENT: f64 = 1e-6;
 const EXCUSED: f64 = 1e-10;
 /// Violation that counts otherwise.
 const VIOLATED: f64 = 1e-13;
+/// From this many rows on, each look at all of them yields up to `QUEUE` candidates.
+const MANY: usize = 100;
+const QUEUE: usize = 12;
 /// Residual of the optimality conditions at which the answer stands.
 const ACCEPT: f64 = 1e-9;
 
@@ -37,6 +40,9 @@ pub struct ActiveSet {
     place: Vec<Place>,
     /// Constraints whose violation is a matter of rounding.
     excused: Vec<bool>,
+    /// Next candidates with their violation when last looked at, the largest last.
+    queue: Vec<(f64, usize)>,
+    queue_length: usize,
     /// Multipliers by id; bounds have nonnegative ones here.
     y: Vec<f64>,
     d: Vec<f64>,
@@ -313,40 +319,67 @@ impl ActiveSet {
 
     // --- the dual ascent ------------------------------------------------------------------------------------------------
 
-    /// The constraint that contradicts optimality most, and the direction in which its multiplier has to go. Equalities come
-    /// first: they are in every working set sooner or later.
-    fn pick(&self, qp: &Quadratic) -> Option<(usize, f64)> {
-        let n = self.n;
-        let mut worst = (0.0, None);
+    /// By how much a constraint contradicts optimality, and the direction in which its multiplier has to go.
+    fn contradiction(&self, qp: &Quadratic, id: usize, reach: f64) -> Option<(f64, f64)> {
+        if !self.exists(qp, id) {
+            return None;
+        }
+        let place = self.place[id];
+        if place == Place::Working {
+            return None;
+        }
+        let value = self.value(qp, id);
+        let (violation, sign) = match place {
+            Place::Off if self.equality(qp, id) => (value.abs(), -value.signum()),
+            Place::Full => (value, -1.0),
+            _ => (-value, 1.0),
+        };
+        let tolerance = if self.excused[id] { EXCUSED } else { VIOLATED } * (reach + self.constant(qp, id).abs());
+        (violation > tolerance).then_some((violation, sign))
+    }
+
+    /// A constraint that contradicts optimality (nearly) most, and the direction of its multiplier. Equalities come first:
+    /// they are in every working set sooner or later. One look at all rows serves several picks where rows are many.
+    fn pick(&mut self, qp: &Quadratic) -> Option<(usize, f64)> {
         let reach = 1.0 + max_abs(&self.d);
-        for id in 0..self.place.len() {
-            if !self.exists(qp, id) || self.place[id] == Place::Working {
-                continue;
-            }
-            let value = self.value(qp, id);
-            let tolerance = if self.excused[id] { EXCUSED } else { VIOLATED } * (reach + self.constant(qp, id).abs());
-            let (violation, sign) = match self.place[id] {
-                Place::Off if self.equality(qp, id) => (value.abs(), -value.signum()),
-                Place::Off => (-value, 1.0),
-                Place::Full => (value, -1.0),
-                Place::Empty => (-value, 1.0),
-                Place::Working => (0.0, 1.0),
-            };
-            if violation > tolerance {
-                if self.place[id] == Place::Off && id >= 2 * n && qp.equality[id - 2 * n] {
+        while let Some((former, id)) = self.queue.pop() {
+            if let Some((violation, sign)) = self.contradiction(qp, id, reach) {
+                if violation >= 0.3 * former {
                     return Some((id, sign));
-                }
-                if violation > worst.0 {
-                    worst = (violation, Some((id, sign)));
                 }
             }
         }
-        worst.1
+        for id in 0..self.place.len() {
+            if let Some((mut violation, _)) = self.contradiction(qp, id, reach) {
+                if self.equality(qp, id) && self.place[id] == Place::Off {
+                    violation = f64::MAX;
+                }
+                // Insertion into the few largest, the largest last; of equals the first comes first.
+                let position = self.queue.partition_point(|(other, _)| *other < violation);
+                if self.queue.len() < self.queue_length {
+                    self.queue.insert(position, (violation, id));
+                } else if position > 0 {
+                    self.queue[..position].rotate_left(1);
+                    self.queue[position - 1] = (violation, id);
+                }
+            }
+        }
+        let (_, id) = self.queue.pop()?;
+        // The others must have kept most of what they are worth now.
+        let (_, sign) = self.contradiction(qp, id, reach)?;
+        for entry in &mut self.queue {
+            if entry.0 == f64::MAX {
+                entry.0 = 0.0;
+            }
+        }
+        Some((id, sign))
     }
 
     fn ascend(&mut self, qp: &Quadratic) -> Result<(), Failure> {
         let limit = 50 + 10 * (self.n + qp.len());
         let mut count = 0;
+        self.queue.clear();
+        self.queue_length = if qp.len() < MANY { 1 } else { QUEUE };
         self.excused.clear();
         self.excused.resize(self.place.len(), false);
         while let Some((p, sign)) = self.pick(qp) {
