@@ -1,7 +1,7 @@
 //! Everything that constraints and criteria look at, at each instant of a half step.
 //!
 //! The *quantities* of an instant are the torques of all joints, the reaction, the joints' angles and
-//! rates, and the swing foot's clearance; each with its gradient in the half step's parameters.
+//! rates, the swing foot's clearance and the platform's height; each with its gradient in the half step's parameters.
 
 use crate::model::{Description, Gait};
 use crate::stance::{Layout, Mesh, Prescribed, Stance, basis_derivatives};
@@ -44,8 +44,13 @@ impl Quantities {
         3 * self.joints + self.components
     }
 
-    pub fn len(&self) -> usize {
+    /// Height of the platform's mass centre over the ground, m.
+    pub fn height(&self) -> usize {
         self.clearance() + 1
+    }
+
+    pub fn len(&self) -> usize {
+        self.height() + 1
     }
 
     pub fn is_empty(&self) -> bool {
@@ -185,6 +190,7 @@ impl Instants {
             values[..nj + nc].copy_from_slice(&inverse[1..1 + nj + nc]);
             values[y.angle(0)..y.angle(0) + nj].copy_from_slice(&state.q[..nj]);
             values[y.rate(0)..y.rate(0) + nj].copy_from_slice(&state.qd[..nj]);
+            values[y.height()] = placement[1];
             values[y.clearance()] = if k == 0 || k == last {
                 let end = usize::from(k == last);
                 gait.swing_velocity(leg, &state.q, &state.qd, &mut self.swing[end]);
@@ -228,7 +234,9 @@ impl Instants {
             for (j, out) in block[y.rate(0) * np..].chunks_mut(np).take(nj).enumerate() {
                 chain.coordinate(j, 1, out);
             }
-            let out = &mut block[y.clearance() * np..];
+            let row = &self.placement(d, k)[2 * nc + nq..][..nq];
+            chain.row([row, &[], &[]], None, &mut block[y.height() * np..][..np]);
+            let out = &mut block[y.clearance() * np..][..np];
             if k == 0 || k == last {
                 let end = usize::from(k == last);
                 let swing = &self.swing[end];

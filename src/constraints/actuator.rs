@@ -15,7 +15,7 @@ pub fn constraints(description: &Description, y: &Quantities) -> Vec<PathConstra
         }
         let slope = (joint.unloaded_speed - joint.loaded_speed) / joint.max_torque;
         for (speed, torque) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
-            let name = format!("torque-speed limit of {}", joint.name);
+            let name = format!("torque–speed of {}", joint.name);
             let terms = vec![(y.rate(j), -speed), (y.torque(j), -torque * slope)];
             list.push(PathConstraint::linear(name, joint.unloaded_speed, joint.unloaded_speed, terms));
         }

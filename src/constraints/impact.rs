@@ -26,9 +26,9 @@ impl ImpactConstraints {
 
     pub fn name(&self, i: usize) -> &'static str {
         match (i, self.lateral) {
-            (0, _) => "impulse upward",
+            (0, _) => "vertical impulse",
             (1, _) | (2, false) => "friction of the impulse",
-            _ => "lift-off of the other foot",
+            _ => "leaving foot",
         }
     }
 

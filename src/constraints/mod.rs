@@ -5,6 +5,7 @@
 //! natural unit, so that 1e-6 means the same everywhere.
 
 mod actuator;
+mod ground;
 mod impact;
 mod range;
 mod reaction;
@@ -42,6 +43,7 @@ pub fn path_constraints(description: &Description) -> Vec<PathConstraint> {
     let mut list = actuator::constraints(description, &y);
     list.extend(reaction::constraints(description, &y));
     list.push(swing::constraint(description, &y));
+    list.push(ground::constraint(description, &y));
     list.extend(range::constraints(description, &y));
     list
 }

@@ -289,7 +289,7 @@ impl Cycle<'_> {
         let nq = q.len();
         let zero = [0.0; 64];
         let zero = &zero[..nq.min(64)];
-        self.gait.curvature(p.leg, q, qd, zero, zero, &zero[..self.description().positions()], &[sigma, 0.0, height, 0.0, 0.0], kernel);
+        self.gait.curvature(p.leg, q, qd, zero, zero, &zero[..self.description().positions()], &[sigma, 0.0, height, 0.0, 0.0, 0.0], kernel);
         let blocks = &kernel[3 * nq..];
         let block = |b: usize, i: usize, j: usize| blocks[b * nq * nq + i * nq + j];
         let size = 2 * nq;
@@ -377,6 +377,7 @@ impl PhaseWork {
         let placement = p.instants.placement(d, node);
         beta += height * placement[2 * nc + nc * nq + nq + d.unactuated];
         beta += self.travel_weight(p, node) * placement[2 * nc + d.unactuated];
+        beta += w[y.height()] * placement[2 * nc + nq + d.unactuated];
         [beta, betad, balance]
     }
 
@@ -421,7 +422,7 @@ impl PhaseWork {
             self.n[k] += balance;
         }
         let (height, velocity) = self.swing_weights(p, node);
-        let others = [chi, kappa, height, self.travel_weight(p, node), velocity];
+        let others = [chi, kappa, height, self.travel_weight(p, node), velocity, w[y.height()]];
         let state = &p.instants.states[node];
         gait.curvature(p.leg, &state.q, &state.qd, &state.qdd, &self.n, &w[y.force(0)..][..nc], &others, &mut self.out);
         let (gradient, blocks) = self.out.split_at(3 * nq);

@@ -88,7 +88,7 @@ impl Cycle<'_> {
 
     /// Which equality `i` is, in words.
     pub fn equality_label(&self, i: usize) -> Label {
-        let names = ["closure of β", "closure of σ", "touchdown of the swing foot"];
+        let names = ["closure of β", "closure of σ", "touchdown height"];
         match self.phases.get(i / CLOSURE) {
             Some(p) => Label { name: names[i % CLOSURE].into(), half_step: i / CLOSURE + 1, time: p.duration() },
             None => Label { name: "mean speed".into(), half_step: self.phases.len(), time: 0.0 },

@@ -3,98 +3,116 @@
 //! Only the curvature along the active constraints matters. By Finsler's lemma W + γAᵀA is positive definite for large γ
 //! exactly if W is so on the null space of the active normals A; and because (γ/2)‖Ad + b‖² vanishes on Ad + b = 0, adding it
 //! to the subproblem (with its linear part γAᵀb) changes neither step nor multipliers as long as these constraints stay active.
-//! Only if that fails too is W shifted: not by a multiple of I, which knows nothing of the variables' scales, but by one of the
-//! positive definite quasi-Newton matrix B that is kept alongside, W + τB. The shift is remembered, as in Ipopt (Wächter &
-//! Biegler 2006), so that a run of indefinite Hessians costs few factorizations.
+//!
+//! If that is still indefinite, its negative eigenvalues change their sign, in a metric D that knows the variables' scales:
+//! directions of negative curvature are descended as fast as their curvature says, all others stay Newton's.
 
 use super::dense::{axpy, cholesky, max_abs, rank_one};
+use super::eigen;
 use super::qp::{Place, Quadratic};
 
 #[derive(Clone, Debug)]
 pub(super) struct Convexifier {
     l: Vec<f64>,
+    /// W + γAᵀA.
     augmented: Vec<f64>,
     active: Vec<usize>,
-    shift: f64,
+    vectors: Vec<f64>,
+    lambda: Vec<f64>,
+    off: Vec<f64>,
+    column: Vec<f64>,
 }
 
 impl Convexifier {
     pub(super) fn new(n: usize) -> Self {
-        Self { l: vec![0.0; n * n], augmented: vec![0.0; n * n], active: Vec::new(), shift: 0.0 }
+        Self {
+            l: vec![0.0; n * n],
+            augmented: vec![0.0; n * n],
+            active: Vec::new(),
+            vectors: vec![0.0; n * n],
+            lambda: vec![0.0; n],
+            off: vec![0.0; n],
+            column: vec![0.0; n],
+        }
     }
 
-    /// Writes the stand-in for `w` and its linear part into `qp` (whose gradient must be ∇f), and adds the shift by `model` to
-    /// `w` itself, so that `w` remains the curvature of the model. The rows to count on are those that `qp` hints at.
+    /// Writes the stand-in for `w` and its linear part into `qp` (whose gradient must be ∇f), and turns `w` itself into the
+    /// stand-in without γAᵀA, the curvature of the model along the constraints. `model`: the quasi-Newton matrix, the stand-in
+    /// of last resort. With `augment`, the rows that `qp` hints at are expected to stay active; else γ = 0.
     pub(super) fn convexify(&mut self, w: &mut [f64], qp: &mut Quadratic, model: &[f64], augment: bool) {
         let n = qp.n;
-        self.active.clear();
-        self.active.extend((0..qp.len()).filter(|i| augment && qp.hints[2 * n + i] == Place::Working));
         let size = max_abs(w).max(1e-8);
         // Barely definite is not enough: the steps of the active-set method would be noise.
         let floor = 1e-8 * size;
         if self.definite(w, n, floor) {
             qp.hessian.copy_from_slice(w);
-            self.shift = 0.0;
             return;
         }
+        self.active.clear();
+        if augment {
+            self.active.extend((0..qp.len()).filter(|i| qp.hints[2 * n + i] == Place::Working));
+        }
         let mut gamma = 0.0;
+        let mut definite = false;
         for candidate in [1e1, 1e3] {
-            self.augmented.copy_from_slice(w);
-            for &i in &self.active {
-                rank_one(candidate * size, qp.row(i), &mut self.augmented);
-            }
-            let augmented = std::mem::take(&mut self.augmented);
-            let definite = self.definite(&augmented, n, floor);
-            self.augmented = augmented;
-            gamma = candidate * size;
-            if definite {
+            if self.active.is_empty() || definite {
                 break;
             }
+            gamma = candidate * size;
+            self.augment(w, qp, gamma);
+            let augmented = std::mem::take(&mut self.augmented);
+            definite = self.definite(&augmented, n, floor);
+            self.augmented = augmented;
         }
-        let augmented = std::mem::take(&mut self.augmented);
-        let definite = self.definite(&augmented, n, floor);
-        self.augmented = augmented;
-        if definite {
-            qp.hessian.copy_from_slice(&self.augmented);
+        if !definite {
+            // A moderate γ keeps the eigenvectors of the two parts apart well enough.
+            gamma = if self.active.is_empty() { 0.0 } else { 1e1 * size };
+            self.augment(w, qp, gamma);
+            if !self.reflect(w, n, size) {
+                w.copy_from_slice(model);
+                self.augmented.copy_from_slice(model);
+                gamma = 0.0;
+            }
+        }
+        qp.hessian.copy_from_slice(&self.augmented);
+        if gamma > 0.0 {
             for &i in &self.active {
                 let b = qp.constants[i];
                 axpy(gamma * b, &qp.rows[i * n..(i + 1) * n], &mut qp.gradient);
             }
-            return;
         }
-        // γ as large as this would only make the matrix ill-conditioned: W + τB alone.
-        let mut tau = if self.shift > 0.0 { 0.1 * self.shift } else { 1e-2 };
-        while tau < 1e4 && !self.definite_shifted(w, n, tau, model, floor) {
-            tau *= 4.0;
+    }
+
+    /// W + γAᵀA.
+    fn augment(&mut self, w: &[f64], qp: &Quadratic, gamma: f64) {
+        self.augmented.copy_from_slice(w);
+        for &i in &self.active {
+            rank_one(gamma, qp.row(i), &mut self.augmented);
         }
-        self.shift = tau.min(1e2);
-        if tau >= 1e4 {
-            w.fill(0.0);
-            tau = 1.0;
+    }
+
+    /// Adds (|λ| − λ)·(Dv)(Dv)ᵀ to both matrices for each eigenpair of D⁻¹(W + γAᵀA)D⁻¹ with λ < 0 (or nearly 0).
+    fn reflect(&mut self, w: &mut [f64], n: usize, size: f64) -> bool {
+        self.vectors.copy_from_slice(&self.augmented);
+        if !eigen::symmetric(&mut self.vectors, &mut self.lambda, &mut self.off) {
+            return false;
         }
-        shift(tau, model, n, w);
-        qp.hessian.copy_from_slice(w);
+        for k in 0..n {
+            let lambda = self.lambda[k];
+            let wanted = lambda.abs().max(1e-6 * size);
+            if lambda < wanted {
+                for (c, row) in self.column.iter_mut().zip(self.vectors.chunks_exact(n)) {
+                    *c = row[k];
+                }
+                rank_one(wanted - lambda, &self.column, w);
+                rank_one(wanted - lambda, &self.column, &mut self.augmented);
+            }
+        }
+        true
     }
 
     fn definite(&mut self, a: &[f64], n: usize, floor: f64) -> bool {
         // The smallest squared pivot bounds the smallest eigenvalue from above; near enough as a safeguard.
         cholesky(a, n, &mut self.l) && (0..n).all(|i| self.l[i * n + i] * self.l[i * n + i] > floor)
-    }
-
-    fn definite_shifted(&mut self, w: &[f64], n: usize, tau: f64, model: &[f64], floor: f64) -> bool {
-        self.augmented.copy_from_slice(w);
-        shift(tau, model, n, &mut self.augmented);
-        let shifted = std::mem::take(&mut self.augmented);
-        let definite = self.definite(&shifted, n, floor);
-        self.augmented = shifted;
-        definite
-    }
-}
-
-/// W + τ(B + diag B): where B has forgotten a direction, its diagonal still knows the variables' scales.
-fn shift(tau: f64, model: &[f64], n: usize, w: &mut [f64]) {
-    axpy(tau, model, w);
-    for (w, b) in w.iter_mut().step_by(n + 1).zip(model.iter().step_by(n + 1)) {
-        *w += 0.1 * tau * b;
     }
 }

@@ -4,7 +4,7 @@
 //! is that of the plain program. Otherwise its linear violation is (nearly) the best that any step can do, and the penalty is
 //! *steered* (Byrd, Nocedal & Waltz 2008): starting from the present one, raised until the step achieves a fair share of it.
 
-use super::dense::{dot, max_abs, multiply};
+use super::dense::{axpy, dot, max_abs, multiply};
 use super::merit::Promise;
 use super::minimize::{Phase, Run};
 use super::screening::Trouble;
@@ -127,9 +127,33 @@ impl<P: Problem> Run<'_, '_, P> {
         self.subproblem.qp.gradient.fill(0.0);
         self.curvature.copy_from_slice(&self.violation_model.b);
         self.subproblem.qp.hessian.copy_from_slice(&self.curvature);
+        if self.exact && !self.distrust && self.violation_multipliers && self.violation_hessian() {
+            let (model, qp) = (&self.violation_model.b, &mut self.subproblem.qp);
+            self.convexifier.convexify(&mut self.curvature, qp, model, false);
+        }
         self.subproblem.cap(1.0);
         self.subproblem.solve(&self.view, &self.point)?;
         Ok(self.conclude(Kind::Feasibility))
+    }
+
+    /// The exact Hessian of −λᵀc_E − μᵀc_I, as the difference of two that contain f, into `curvature`.
+    fn violation_hessian(&mut self) -> bool {
+        if !self.hessian_known {
+            let mut objective = std::mem::take(&mut self.curvature);
+            self.hessian_known = self.view.hessian(&self.lambda, &self.mu, &mut self.hessian)
+                && self.view.hessian(&self.zeros.0, &self.zeros.1, &mut objective);
+            axpy(-1.0, &objective, &mut self.hessian);
+            // A little proximity, where the constraints are straight.
+            let prox = 1e-2 * self.proximity();
+            self.hessian.iter_mut().step_by(self.d.len() + 1).for_each(|h| *h += prox);
+            self.curvature = objective;
+        }
+        if self.hessian_known {
+            self.curvature.copy_from_slice(&self.hessian);
+        } else {
+            self.curvature.copy_from_slice(&self.violation_model.b);
+        }
+        self.hessian_known
     }
 
     fn set_bounds(&mut self) {
@@ -154,6 +178,7 @@ impl<P: Problem> Run<'_, '_, P> {
             relief: self.point.violation - self.subproblem.linear_violation,
         };
         self.adopt_multipliers();
+        self.violation_multipliers = !optimality;
         if optimality {
             if self.optimal() {
                 return Direction::Stationary;

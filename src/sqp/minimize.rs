@@ -16,6 +16,8 @@ use super::{Conflict, Control, Iteration, Kind, KktResidual, Options, Problem, S
 
 /// Consecutive steps that change nothing before the solver admits it.
 const STALLS: usize = 4;
+/// Iterations in which the violation alone must fall by a hundredth.
+const PATIENCE: usize = 40;
 
 /// Minimizes the problem from `x0` (moved into the bounds first). The observer sees every iterate and may stop the run.
 ///
@@ -96,6 +98,9 @@ pub(super) struct Run<'a, 'p, P: Problem> {
     pub(super) distrust: bool,
     pub(super) hessian: Vec<f64>,
     pub(super) hessian_known: bool,
+    /// The multipliers are those of the violation.
+    pub(super) violation_multipliers: bool,
+    pub(super) zeros: (Vec<f64>, Vec<f64>),
     pub(super) convexifier: Convexifier,
     pub(super) curvature: Vec<f64>,
 
@@ -105,6 +110,8 @@ pub(super) struct Run<'a, 'p, P: Problem> {
     y: Vec<f64>,
     pending: bool,
     stalls: usize,
+    /// The violation that counts as progress in the feasibility phase, and the iterations since it was reached.
+    pub(super) record: (f64, usize),
 }
 
 impl<'a, 'p, P: Problem> Run<'a, 'p, P> {
@@ -140,6 +147,8 @@ impl<'a, 'p, P: Problem> Run<'a, 'p, P> {
             distrust: false,
             hessian: vec![0.0; n * n],
             hessian_known: false,
+            violation_multipliers: false,
+            zeros: (vec![0.0; equalities], vec![0.0; inequalities]),
             convexifier: Convexifier::new(n),
             curvature: vec![0.0; n * n],
             former: zeros(),
@@ -147,6 +156,7 @@ impl<'a, 'p, P: Problem> Run<'a, 'p, P> {
             y: zeros(),
             pending: false,
             stalls: 0,
+            record: (f64::INFINITY, 0),
             view,
         }
     }
@@ -198,6 +208,13 @@ impl<'a, 'p, P: Problem> Run<'a, 'p, P> {
             if self.subproblem.gather(&self.view, &self.point, &self.mu).is_err() {
                 return self.end(Status::Undefined, k + 1);
             }
+            if self.phase != Phase::Optimality && self.record.1 >= PATIENCE {
+                if self.measure().is_err() {
+                    return self.end(Status::Undefined, k + 1);
+                }
+                let proven = self.kkt.stationarity <= 1e3 * self.options.tolerance;
+                return self.end(if proven { Status::Infeasible } else { Status::NoProgress }, k + 1);
+            }
             if self.stalls >= STALLS {
                 let k = k + 1;
                 return match self.measure() {
@@ -228,10 +245,14 @@ impl<'a, 'p, P: Problem> Run<'a, 'p, P> {
     fn forget(&mut self) {
         let size = norm(&self.gradient) / self.options.initial_step;
         self.lagrangian_model.reset(if size > 0.0 { size } else { 1.0 });
-        // For the violation: a step of that length costs a tenth of what it could gain.
-        let step = self.options.initial_step;
-        self.violation_model.reset((0.1 * self.point.violation / (step * step)).max(1e-6));
+        self.violation_model.reset(self.proximity());
         self.pending = false;
+    }
+
+    /// Curvature of the violation before any is known: a step of the initial length costs a tenth of what it could gain.
+    pub(super) fn proximity(&self) -> f64 {
+        let step = self.options.initial_step;
+        (0.1 * self.point.violation / (step * step)).max(1e-6)
     }
 
     /// ∇L and the optimality residuals at the iterate; the rows of the multipliers are there already.
@@ -305,7 +326,11 @@ impl<'a, 'p, P: Problem> Run<'a, 'p, P> {
                 self.look_at_violation();
                 true
             }
-            Phase::Feasibility { .. } if attempt <= 4 && !self.violation_model.fresh => {
+            Phase::Feasibility { .. } if self.exact && !self.distrust => {
+                self.distrust = true;
+                true
+            }
+            Phase::Feasibility { .. } if attempt <= 5 && !self.violation_model.fresh => {
                 self.forget();
                 true
             }
@@ -316,8 +341,9 @@ impl<'a, 'p, P: Problem> Run<'a, 'p, P> {
     pub(super) fn look_at_violation(&mut self) {
         self.phase = Phase::Feasibility { from: self.point.violation };
         self.pending = false;
-        let step = self.options.initial_step;
-        self.violation_model.reset((0.1 * self.point.violation / (step * step)).max(1e-6));
+        self.hessian_known = false;
+        self.record = (self.point.violation, 0);
+        self.violation_model.reset(self.proximity());
     }
 
     /// Moves to the accepted trial point, whose derivatives are ready.
@@ -328,6 +354,10 @@ impl<'a, 'p, P: Problem> Run<'a, 'p, P> {
         let still = self.s.iter().zip(&self.point.z).all(|(s, z)| s.abs() <= 1e-14 * (1.0 + z.abs()));
         self.stalls = if still { self.stalls + 1 } else { 0 };
         self.pending = true;
+        if self.phase != Phase::Optimality {
+            let progress = self.trial.violation < 0.99 * self.record.0;
+            self.record = if progress { (self.trial.violation, 0) } else { (self.record.0, self.record.1 + 1) };
+        }
         std::mem::swap(&mut self.point, &mut self.trial);
         // `search` put the new gradient into `trial_gradient`.
         std::mem::swap(&mut self.gradient, &mut self.trial_gradient);

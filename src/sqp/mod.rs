@@ -44,6 +44,7 @@
 mod convexify;
 mod dense;
 mod direction;
+mod eigen;
 mod kkt;
 mod line_search;
 mod merit;

@@ -55,6 +55,7 @@ pub fn evaluate(description: &Description, phase: &mut Phase, points: usize, tal
         judge.joints(&state, t, tally);
         judge.reaction(&state.force, t, tally);
         judge.clearance(&state, s, phase.duration, tally);
+        tally.note(Constraint::Ground, state.platform.y / judge.leg, t);
         if i == 0 {
             ends[0] = state.platform.x;
         }

@@ -57,13 +57,13 @@ fn instant(model: &mut Model, leg: usize) -> Kernel {
     let (q, qd, qdd) = (model.q(0), model.q(1), model.q(2));
     let n = symbols(model, "n", q.len());
     let phi = symbols(model, "phi", model.mechanism.positions());
-    let others = symbols(model, "w", 5);
+    let others = symbols(model, "w", 6);
     let stance = Stance::new(model, leg);
     let mut sum = virtual_power(model, leg, &n, &phi);
     let swing = subtract(&model.foot(1 - leg), &model.foot(leg));
     let swing_rate = model.rate(&swing);
-    let platform_x = -&model.foot(leg)[0];
-    let terms = [&stance.sigma, &stance.gravity_moment, &swing[1], &platform_x, &swing_rate[1]];
+    let platform = model.foot(leg).map(|x| -&x);
+    let terms = [&stance.sigma, &stance.gravity_moment, &swing[1], &platform[0], &swing_rate[1], &platform[1]];
     for (weight, term) in others.iter().zip(terms) {
         sum += &(&Poly::from(*weight) * term);
     }
@@ -77,7 +77,7 @@ fn instant(model: &mut Model, leg: usize) -> Kernel {
         format!("curvature{}", leg + 1),
         "Gradient in (q, q̇, q̈) and second derivatives of the sum of all outputs of an instant, each with its weight: \
          generalized forces of q (n), reaction (phi), and σ, σ̇, swing foot's height, platform's x, swing foot's \
-         vertical velocity (others).",
+         vertical velocity, platform's height (others).",
     )
     .input("q", q)
     .input("qd", qd)

@@ -136,7 +136,7 @@ impl Factor {
         self.q -= 1;
         for i in k..self.q {
             let (a, b) = (self.r[i * n + i], self.r[i * n + i + 1]);
-            let length = a.hypot(b);
+            let length = (a * a + b * b).sqrt();
             if length == 0.0 {
                 continue;
             }
