@@ -166,7 +166,8 @@ impl Description {
     /// The coordinates of q along which no torque does work: the whole robot turning about the stance foot.
     pub fn free_direction(&self) -> impl Iterator<Item = usize> + '_ {
         let rotates = self.rotation != Rotation::None;
-        (0..self.orientations()).filter(move |k| if rotates { *k == self.joints.len() } else { self.hangs_on_platform(*k) })
+        (0..self.orientations())
+            .filter(move |k| if rotates { *k == self.joints.len() } else { self.hangs_on_platform(*k) })
     }
 
     /// Whether the joint connects a leg to the platform.
@@ -180,7 +181,8 @@ impl Description {
         if k >= self.joints.len() {
             return (k, if self.rotation == Rotation::Roll { -1.0 } else { 1.0 });
         }
-        let from = if k < b.first_joint { b.first_joint + (k - a.first_joint) } else { a.first_joint + (k - b.first_joint) };
+        let from =
+            if k < b.first_joint { b.first_joint + (k - a.first_joint) } else { a.first_joint + (k - b.first_joint) };
         (from, 1.0)
     }
 }
@@ -240,7 +242,17 @@ pub trait Gait: Sync {
     /// Impact on the foot of `leg` after support on the other: q̇⁺, impulse, leaving, landing, Jacobian in (q, q̇⁻).
     fn touchdown(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]);
     /// Gradient and second derivatives (q·q, q·q̇, q·q̈, q̇·q̇) of the weighted sum of an instant's outputs.
-    fn curvature(&self, leg: usize, q: &[f64], qd: &[f64], qdd: &[f64], n: &[f64], phi: &[f64], others: &[f64], out: &mut [f64]);
+    fn curvature(
+        &self,
+        leg: usize,
+        q: &[f64],
+        qd: &[f64],
+        qdd: &[f64],
+        n: &[f64],
+        phi: &[f64],
+        others: &[f64],
+        out: &mut [f64],
+    );
     /// Second derivatives (q·q, q·q̇⁻, q·q̇⁺) of a touchdown's weighted results.
     fn touchdown_curvature(&self, leg: usize, q: &[f64], qd: &[f64], xi: &[f64], outputs: &[f64], out: &mut [f64]);
     /// Both feet stay (eq. 11): Ẋ⁺, impulses on foot 1 and 2, pivots, scale.

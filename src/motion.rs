@@ -33,7 +33,7 @@ pub struct HalfStep {
 }
 
 /// What is minimized, per metre of travel (§4.3).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Criterion {
     /// C2 = (1/d) ∫ Σ |Γj q̇j| dt, N (eq. 14).

@@ -118,23 +118,26 @@ pub struct SearchEntry {
 
 impl GaitResult {
     /// Verifies what a search found: the best optimum whose receipt holds is the result.
-    pub fn new(gait: &dyn Gait, criterion: Criterion, speed: f64, found: &Found, seed: u64, seconds: impl Fn() -> f64) -> GaitResult {
+    pub fn new(
+        gait: &dyn Gait,
+        criterion: Criterion,
+        speed: f64,
+        found: &Found,
+        seed: u64,
+        seconds: impl Fn() -> f64,
+    ) -> GaitResult {
         let mut result = GaitResult::empty(gait, criterion, speed, SearchEntry { starts: found.starts, seed });
-        result.local_optima = found
-            .optima
-            .iter()
-            .map(|o| LocalOptimum {
-                cost: o.local.costs.of(criterion),
-                durations: o.local.motion.half_steps.iter().map(|h| h.duration).collect(),
-                reached: o.reached,
-            })
-            .collect();
-        for (rank, optimum) in found.optima.iter().enumerate() {
-            result.take(gait, &optimum.local);
-            if result.status == Status::Optimal {
-                // What ranks before it has no receipt: it does not leave the program as an optimum.
-                result.local_optima.drain(..rank);
-                break;
+        for optimum in &found.optima {
+            let mut candidate = GaitResult::empty(gait, criterion, speed, result.search);
+            candidate.take(gait, &optimum.local);
+            // Without its receipt an optimum does not leave the program.
+            if let Some(cost) = candidate.cost {
+                let durations = candidate.durations.clone();
+                result.local_optima.push(LocalOptimum { cost, durations, reached: optimum.reached });
+            }
+            if !result.is_optimal() {
+                candidate.local_optima = std::mem::take(&mut result.local_optima);
+                result = candidate;
             }
         }
         if found.optima.is_empty() {
@@ -190,8 +193,11 @@ impl GaitResult {
         must("the cycle error", receipt.cycle_error, CYCLE_ERROR);
         must("the KKT residual", kkt_residual, KKT_RESIDUAL);
         self.status = if reasons.is_empty() { Status::Optimal } else { Status::ReceiptFailed };
-        self.message =
-            if reasons.is_empty() { "local optimum, receipt holds".into() } else { format!("no receipt: {}", reasons.join("; ")) };
+        self.message = if reasons.is_empty() {
+            "local optimum, receipt holds".into()
+        } else {
+            format!("no receipt: {}", reasons.join("; "))
+        };
         let holds = self.status == Status::Optimal;
         self.cost = holds.then(|| receipt.costs.of(self.criterion));
         self.costs = holds.then_some(receipt.costs);

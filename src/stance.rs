@@ -15,7 +15,9 @@ use crate::trajectory::{Basis, Jet};
 /// A motion that the equations do not admit.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Undefined {
-    #[error("the inertia about the stance foot vanishes (f1 → 0): the unactuated coordinate cannot be driven in this posture")]
+    #[error(
+        "the inertia about the stance foot vanishes (f1 → 0): the unactuated coordinate cannot be driven in this posture"
+    )]
     NoInertia,
     #[error("the unactuated coordinate runs away: no motion with these joint trajectories")]
     Diverged,

@@ -47,7 +47,8 @@ pub struct Misfit {
 /// # Errors
 /// If a state has the wrong number of coordinates for the gait.
 pub fn evaluate(gait: &dyn Gait, states: &States) -> Result<Value, Misfit> {
-    let results = states.states.iter().enumerate().map(|(i, s)| evaluate_state(gait, i, s)).collect::<Result<Vec<_>, _>>()?;
+    let results =
+        states.states.iter().enumerate().map(|(i, s)| evaluate_state(gait, i, s)).collect::<Result<Vec<_>, _>>()?;
     Ok(json!({ "gait": gait.description().gait, "states": results }))
 }
 
@@ -123,10 +124,14 @@ fn evaluate_state(gait: &dyn Gait, index: usize, state: &State) -> Result<Value,
     let condition = condition(&contact_system(&a, &[&feet[0], &feet[1]], n, np));
     put(
         "impact11",
-        unless_singular(condition, "the two feet cannot be brought to rest independently (a level touchdown, or a stretched pose)", || {
-            let r = vector(n + 4 * np, |o| gait.impact_both(q, &state.xd, o));
-            json!({ "Xdot_plus": r[..n], "impulse1": r[n..n + np], "impulse2": r[n + np..n + 2 * np], "cond": condition })
-        }),
+        unless_singular(
+            condition,
+            "the two feet cannot be brought to rest independently (a level touchdown, or a stretched pose)",
+            || {
+                let r = vector(n + 4 * np, |o| gait.impact_both(q, &state.xd, o));
+                json!({ "Xdot_plus": r[..n], "impulse1": r[n..n + np], "impulse2": r[n + np..n + 2 * np], "cond": condition })
+            },
+        ),
     );
     Ok(Value::Object(out))
 }
@@ -152,15 +157,19 @@ fn single_support(gait: &dyn Gait, leg: usize, state: &State, a: &[f64], foot: &
     }
     if let Some(xdd) = &state.xdd {
         let condition = condition(&inverse_system(d, a, foot));
-        let inverse = unless_singular(condition, "f1 vanishes: no torque-free coordinate follows from the momentum (eq. 10)", || {
-            let prescribed: Vec<f64> = (0..d.prescribed()).map(|k| xdd[np + d.prescribed_index(k)]).collect();
-            let r = vector(n + d.joints() + np, |o| gait.inverse(leg, q, qd, &prescribed, o));
-            let torques: Vec<f64> = d.independent_torques().map(|j| r[n + j]).collect();
-            json!({
-                "Xddot": r[..n], "betaddot": r[np + d.unactuated], "Gamma": torques,
-                "F": r[n + d.joints()..], "cond": condition,
-            })
-        });
+        let inverse = unless_singular(
+            condition,
+            "f1 vanishes: no torque-free coordinate follows from the momentum (eq. 10)",
+            || {
+                let prescribed: Vec<f64> = (0..d.prescribed()).map(|k| xdd[np + d.prescribed_index(k)]).collect();
+                let r = vector(n + d.joints() + np, |o| gait.inverse(leg, q, qd, &prescribed, o));
+                let torques: Vec<f64> = d.independent_torques().map(|j| r[n + j]).collect();
+                json!({
+                    "Xddot": r[..n], "betaddot": r[np + d.unactuated], "Gamma": torques,
+                    "F": r[n + d.joints()..], "cond": condition,
+                })
+            },
+        );
         result.insert("inverse".into(), inverse);
     }
     Value::Object(result)

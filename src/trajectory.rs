@@ -31,8 +31,10 @@ impl Basis {
         // Each row is a condition on the monomial coefficients; the inverse's columns are the basis.
         let mut conditions = DMatrix::zeros(n, n);
         let mut value_at = |row: usize, s: f64| {
+            let mut power = 1.0;
             for i in 0..n {
-                conditions[(row, i)] = s.powi(i as i32);
+                conditions[(row, i)] = power;
+                power *= s;
             }
         };
         value_at(0, 0.0);

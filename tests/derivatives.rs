@@ -59,16 +59,31 @@ fn check(gait: &dyn Gait, criterion: Criterion, seed: u64) {
         let compare = |what: String, exact: f64, plus: f64, minus: f64, size: f64| {
             let difference = (plus - minus) / (2.0 * h);
             let tolerance = 1e-6 * (size + exact.abs()) + 1e-8 * (plus.abs() + minus.abs()) / h * 1e-6;
-            assert!((difference - exact).abs() <= tolerance.max(2e-6), "{name} {what} by {k}: exact {exact}, difference {difference}");
+            assert!(
+                (difference - exact).abs() <= tolerance.max(2e-6),
+                "{name} {what} by {k}: exact {exact}, difference {difference}"
+            );
         };
         let largest = gradient.iter().fold(1.0f64, |a, b| a.max(b.abs()));
         compare(format!("{criterion:?}"), gradient[k], plus.objective, minus.objective, largest);
         for i in 0..equalities.len() {
-            compare(format!("equality {i} {:?}", cycle.equality_label(i)), equalities[i][k], plus.equalities[i], minus.equalities[i], 10.0);
+            compare(
+                format!("equality {i} {:?}", cycle.equality_label(i)),
+                equalities[i][k],
+                plus.equalities[i],
+                minus.equalities[i],
+                10.0,
+            );
         }
         for i in 0..inequalities.len() {
             let size = inequalities[i].iter().fold(1.0f64, |a, b| a.max(b.abs()));
-            compare(format!("inequality {i} {:?}", cycle.label(i)), inequalities[i][k], plus.inequalities[i], minus.inequalities[i], size);
+            compare(
+                format!("inequality {i} {:?}", cycle.label(i)),
+                inequalities[i][k],
+                plus.inequalities[i],
+                minus.inequalities[i],
+                size,
+            );
         }
     }
 }
@@ -121,7 +136,8 @@ fn the_hessian_of_the_lagrangian_agrees_with_differences_of_its_gradient() {
             let n = theta.len();
             let size = values.objective;
             let lambda: Vec<f64> = (0..cycle.equalities()).map(|_| size * (rng.f64() - 0.5)).collect();
-            let mu: Vec<f64> = (0..cycle.inequalities()).map(|_| if rng.f64() < 0.1 { size * rng.f64() } else { 0.0 }).collect();
+            let mu: Vec<f64> =
+                (0..cycle.inequalities()).map(|_| if rng.f64() < 0.1 { size * rng.f64() } else { 0.0 }).collect();
             cycle.linearize(&theta).unwrap();
             let mut hessian = vec![0.0; n * n];
             assert!(cycle.hessian(&lambda, &mu, &mut hessian));

@@ -21,7 +21,8 @@ fn compare(path: &str, expected: &Value, found: &Value, scale: f64, worst: &mut 
                     continue;
                 }
                 // `inverse` is a solved system: its results are as accurate as its conditioning lets.
-                let floor = if path.ends_with("inverse") { largest_of(expected) * condition(expected) * 1e-2 } else { 0.0 };
+                let floor =
+                    if path.ends_with("inverse") { largest_of(expected) * condition(expected) * 1e-2 } else { 0.0 };
                 compare(&format!("{path}.{key}"), e, f, floor.max(1.0), worst);
             }
         }

@@ -51,7 +51,10 @@ pub fn run(folder: &Path) -> anyhow::Result<bool> {
         }
     }
     bar.finish_and_clear();
-    println!("\nEvery optimum is local: the best of {} starts. The paper does not give all of the robot's parameters", settings.starts);
+    println!(
+        "\nEvery optimum is local: the best of {} starts. The paper does not give all of the robot's parameters",
+        settings.starts
+    );
     println!("(see model-spec/robot.toml), so its values are a yardstick, not a like-for-like comparison.");
     println!("{:.1} s; results in {}", started.elapsed().as_secs_f64(), folder.display());
     Ok(all)

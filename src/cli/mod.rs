@@ -38,7 +38,9 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     /// Evaluate the generated dynamics at given states.
-    #[command(after_help = "Example:\n  echo '{\"states\":[{\"X\":[0,0.28,0.4,-0.8,0.1,-0.5],\"Xdot\":[0,0,1,0,0,0]}]}' | piaffe dynamics trot -")]
+    #[command(
+        after_help = "Example:\n  echo '{\"states\":[{\"X\":[0,0.28,0.4,-0.8,0.1,-0.5],\"Xdot\":[0,0,1,0,0,0]}]}' | piaffe dynamics trot -"
+    )]
     Dynamics {
         #[arg(value_parser = gait_names())]
         gait: String,
@@ -52,8 +54,8 @@ enum Command {
         #[arg(value_parser = gait_names())]
         gait: String,
         /// What to minimize per metre: the work of the actuators or the squares of their torques.
-        #[arg(long, value_enum, default_value = "energy")]
-        criterion: Criterion,
+        #[arg(long, value_parser = criterion_names(), default_value = "energy")]
+        criterion: String,
         /// Mean forward speed, m/s.
         #[arg(long, value_parser = positive)]
         speed: f64,
@@ -77,7 +79,7 @@ pub fn run() -> ExitCode {
         Some(Command::Dynamics { gait, file }) => dynamics::run(by_name(&gait), &file),
         Some(Command::Optimize { gait, criterion, speed, seed, starts, json }) => {
             let settings = piaffe::search::multi_start::Settings { starts: starts as usize, seed };
-            optimize::run(by_name(&gait), criterion, speed, &settings, json.as_deref())
+            optimize::run(by_name(&gait), criterion_by_name(&criterion), speed, &settings, json.as_deref())
         }
     };
     match outcome {
@@ -97,6 +99,15 @@ fn gait_names() -> PossibleValuesParser {
 /// The gait of that name; the parser has admitted no other names.
 fn by_name(name: &str) -> &'static dyn Gait {
     GAITS.iter().copied().find(|g| g.description().gait == name).unwrap_or(GAITS[0])
+}
+
+fn criterion_names() -> PossibleValuesParser {
+    PossibleValuesParser::new(Criterion::ALL.map(Criterion::name))
+}
+
+/// The criterion of that name; the parser has admitted no other names.
+fn criterion_by_name(name: &str) -> Criterion {
+    Criterion::ALL.into_iter().find(|c| c.name() == name).unwrap_or(Criterion::Energy)
 }
 
 fn positive(text: &str) -> Result<f64, String> {

@@ -8,7 +8,13 @@ use piaffe::result::GaitResult;
 use piaffe::search::multi_start::{Settings, search};
 use std::time::Instant;
 
-pub fn run(gait: &dyn Gait, criterion: Criterion, speed: f64, settings: &Settings, json: Option<&str>) -> anyhow::Result<bool> {
+pub fn run(
+    gait: &dyn Gait,
+    criterion: Criterion,
+    speed: f64,
+    settings: &Settings,
+    json: Option<&str>,
+) -> anyhow::Result<bool> {
     let bar = progress(settings.starts as u64, "starts");
     let result = solve(gait, criterion, speed, settings, &bar);
     bar.finish_and_clear();

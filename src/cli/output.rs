@@ -8,7 +8,8 @@ use std::path::Path;
 /// Writes a value as JSON to `path`; a reader never sees half of it.
 pub fn write_json(path: &Path, value: &impl Serialize) -> anyhow::Result<()> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut file = tempfile::NamedTempFile::new_in(folder).with_context(|| format!("cannot write into {}", folder.display()))?;
+    let mut file =
+        tempfile::NamedTempFile::new_in(folder).with_context(|| format!("cannot write into {}", folder.display()))?;
     serde_json::to_writer_pretty(&mut file, value)?;
     file.write_all(b"\n")?;
     file.as_file().sync_all()?;
@@ -26,7 +27,8 @@ pub fn write_json(path: &Path, value: &impl Serialize) -> anyhow::Result<()> {
 pub fn json_to(target: &str, value: &impl Serialize) -> anyhow::Result<()> {
     if target == "-" {
         let mut out = std::io::stdout().lock();
-        let result = serde_json::to_writer_pretty(&mut out, value).map_err(std::io::Error::from).and_then(|()| writeln!(out));
+        let result =
+            serde_json::to_writer_pretty(&mut out, value).map_err(std::io::Error::from).and_then(|()| writeln!(out));
         return quiet_when_closed(result);
     }
     write_json(Path::new(target), value)

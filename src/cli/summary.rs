@@ -16,7 +16,11 @@ pub fn print(description: &Description, r: &GaitResult) -> std::io::Result<()> {
     writeln!(out, "{} of {}, least {} at {} m/s: {}", r.gait, r.robot, r.criterion.name(), r.speed, r.message)?;
     if !r.conflicts.is_empty() {
         for c in &r.conflicts {
-            let what = if c.violation > 1e-8 { format!("violated by {:.3} (scaled)", c.violation) } else { "in the way".into() };
+            let what = if c.violation > 1e-8 {
+                format!("violated by {:.3} (scaled)", c.violation)
+            } else {
+                "in the way".into()
+            };
             writeln!(out, "  {:<34} half step {}, t = {:.3} s: {what}", c.constraint, c.half_step, c.time)?;
         }
     }
@@ -48,15 +52,33 @@ pub fn print(description: &Description, r: &GaitResult) -> std::io::Result<()> {
             peak.unloaded_speed,
             rev_per_min(peak.speed, joint.gear),
             rev_per_min(peak.unloaded_speed, joint.gear),
-            100.0 * peak.envelope_margin
+            // An active limit has a margin of rounding size, of either sign.
+            (1000.0 * peak.envelope_margin).round().abs() / 10.0
+                * if peak.envelope_margin < -5e-4 { -1.0 } else { 1.0 }
         )?;
     }
     if let Some(receipt) = &r.receipt {
-        writeln!(out, "  receipt         largest violation {:.1e}, cycle error {:.1e}, KKT residual {:.1e} ({} points per half step)", receipt.max_violation, receipt.cycle_error, receipt.kkt_residual, receipt.grid)?;
-        let active: Vec<String> = receipt.findings.iter().map(|f| format!("{} (half step {}, t = {:.3} s)", f.constraint, f.half_step, f.time)).collect();
-        writeln!(out, "  active          {}", if active.is_empty() { "nothing".into() } else { active.join("\n                  ") })?;
+        writeln!(
+            out,
+            "  receipt         largest violation {:.1e}, cycle error {:.1e}, KKT residual {:.1e} ({} points per half step)",
+            receipt.max_violation, receipt.cycle_error, receipt.kkt_residual, receipt.grid
+        )?;
+        let active: Vec<String> = receipt
+            .findings
+            .iter()
+            .map(|f| format!("{} (half step {}, t = {:.3} s)", f.constraint, f.half_step, f.time))
+            .collect();
+        writeln!(
+            out,
+            "  active          {}",
+            if active.is_empty() { "nothing".into() } else { active.join("\n                  ") }
+        )?;
         if let Some(worst) = receipt.worst.as_ref().filter(|_| r.status != Status::Optimal) {
-            writeln!(out, "  worst           {} (half step {}, t = {:.3} s): {:.2e}", worst.constraint, worst.half_step, worst.time, worst.margin)?;
+            writeln!(
+                out,
+                "  worst           {} (half step {}, t = {:.3} s): {:.2e}",
+                worst.constraint, worst.half_step, worst.time, worst.margin
+            )?;
         }
     }
     if r.local_optima.len() > 1 {

@@ -9,5 +9,10 @@ use crate::model::Description;
 
 pub fn constraint(description: &Description, y: &Quantities) -> PathConstraint {
     let terms = vec![(y.clearance(), 1.0)];
-    PathConstraint::linear("swing clearance".into(), description.leg_length(), -description.limits.swing_clearance, terms)
+    PathConstraint::linear(
+        "swing clearance".into(),
+        description.leg_length(),
+        -description.limits.swing_clearance,
+        terms,
+    )
 }

@@ -37,7 +37,13 @@ pub fn integrate(description: &Description, mesh: &Mesh, instants: &Instants, in
 }
 
 /// √(power² + ε²) − ε by the quadrature of the collocation nodes: what a search may start with.
-pub fn integrate_smooth(epsilon: f64, description: &Description, mesh: &Mesh, instants: &Instants, integral: &mut Integral) {
+pub fn integrate_smooth(
+    epsilon: f64,
+    description: &Description,
+    mesh: &Mesh,
+    instants: &Instants,
+    integral: &mut Integral,
+) {
     let y = instants.quantities;
     for (node, weight) in mesh.weights.iter().copied().enumerate() {
         for j in 0..description.joints() {
@@ -84,13 +90,8 @@ type Roots = smallvec::SmallVec<[(f64, f64); 4]>;
 /// A polynomial whose Bernstein coefficients on [0, 1] agree in sign has no root there.
 fn may_change_sign(c: &[f64; NODES]) -> bool {
     let [c0, c1, c2, c3, c4] = *c;
-    let bernstein = [
-        c0,
-        c0 + c1 / 4.0,
-        c0 + c1 / 2.0 + c2 / 6.0,
-        c0 + 0.75 * c1 + 0.5 * c2 + 0.25 * c3,
-        c0 + c1 + c2 + c3 + c4,
-    ];
+    let bernstein =
+        [c0, c0 + c1 / 4.0, c0 + c1 / 2.0 + c2 / 6.0, c0 + 0.75 * c1 + 0.5 * c2 + 0.25 * c3, c0 + c1 + c2 + c3 + c4];
     bernstein.iter().any(|b| *b > 0.0) && bernstein.iter().any(|b| *b < 0.0)
 }
 

@@ -50,7 +50,9 @@ pub fn integrate(
     integral.kinks.clear();
     match criterion {
         Criterion::Torque => torque::integrate(description, mesh, instants, integral),
-        Criterion::Energy if smoothing > 0.0 => energy::integrate_smooth(smoothing, description, mesh, instants, integral),
+        Criterion::Energy if smoothing > 0.0 => {
+            energy::integrate_smooth(smoothing, description, mesh, instants, integral)
+        }
         Criterion::Energy => energy::integrate(description, mesh, instants, integral),
     }
 }

@@ -111,7 +111,8 @@ impl Cycle<'_> {
         // cost = work/travel: the quotient's own curvature.
         for i in 0..n {
             for j in 0..n {
-                let product = self.cost_gradient[i] * self.travel_gradient[j] + self.travel_gradient[i] * self.cost_gradient[j];
+                let product =
+                    self.cost_gradient[i] * self.travel_gradient[j] + self.travel_gradient[i] * self.cost_gradient[j];
                 hessian[i * n + j] -= product / self.travel;
             }
         }
@@ -133,7 +134,9 @@ impl Cycle<'_> {
         let weights = &mut work.weights;
         self.weighted_path_rows(mu, |phase, node, constraint, multiplier| {
             if phase == k {
-                constraint.partials(p.linearized(node), |quantity, partial| weights[node * count + quantity] -= multiplier * partial);
+                constraint.partials(p.linearized(node), |quantity, partial| {
+                    weights[node * count + quantity] -= multiplier * partial
+                });
             }
         });
         let speed = lambda[CLOSURE * self.phases.len()];
@@ -151,7 +154,11 @@ impl Cycle<'_> {
             }
         }
         let last = p.last() * np;
-        let terminal = [(work.travel, &p.travel_p[..]), (-lambda[CLOSURE * k], &p.stance.beta_p[last..][..np]), (-lambda[CLOSURE * k + 1], &p.stance.sigma_p[last..][..np])];
+        let terminal = [
+            (work.travel, &p.travel_p[..]),
+            (-lambda[CLOSURE * k], &p.stance.beta_p[last..][..np]),
+            (-lambda[CLOSURE * k + 1], &p.stance.sigma_p[last..][..np]),
+        ];
         for (w, row) in terminal {
             gradient.iter_mut().zip(row).for_each(|(g, r)| *g += w * r);
         }
@@ -278,18 +285,44 @@ impl Cycle<'_> {
 
         // Closure of σ and touchdown at this half step's own end.
         let (closure, touchdown) = (lambda[CLOSURE * k + 1], lambda[CLOSURE * k + 2]);
-        self.sigma_curvature(p, &p.q_end, &p.qd_end, closure, -touchdown / d.leg_length(), &mut work.kernel, &mut work.small);
+        self.sigma_curvature(
+            p,
+            &p.q_end,
+            &p.qd_end,
+            closure,
+            -touchdown / d.leg_length(),
+            &mut work.kernel,
+            &mut work.small,
+        );
         self.scatter(k, &work.small, hessian);
         debug_assert_eq!(work.outputs.len(), nc + 2);
     }
 
     /// Second derivatives in (q, q̇) of `sigma · σ + height · swing foot's height`.
     #[allow(clippy::too_many_arguments)]
-    fn sigma_curvature(&self, p: &Phase, q: &[f64], qd: &[f64], sigma: f64, height: f64, kernel: &mut [f64], small: &mut [f64]) {
+    fn sigma_curvature(
+        &self,
+        p: &Phase,
+        q: &[f64],
+        qd: &[f64],
+        sigma: f64,
+        height: f64,
+        kernel: &mut [f64],
+        small: &mut [f64],
+    ) {
         let nq = q.len();
         let zero = [0.0; 64];
         let zero = &zero[..nq.min(64)];
-        self.gait.curvature(p.leg, q, qd, zero, zero, &zero[..self.description().positions()], &[sigma, 0.0, height, 0.0, 0.0, 0.0], kernel);
+        self.gait.curvature(
+            p.leg,
+            q,
+            qd,
+            zero,
+            zero,
+            &zero[..self.description().positions()],
+            &[sigma, 0.0, height, 0.0, 0.0, 0.0],
+            kernel,
+        );
         let blocks = &kernel[3 * nq..];
         let block = |b: usize, i: usize, j: usize| blocks[b * nq * nq + i * nq + j];
         let size = 2 * nq;
@@ -442,7 +475,8 @@ impl PhaseWork {
         let basis = &p.instants.basis[node * m..][..m];
         let by_t = &p.instants.by_duration[node * nt..][..nt];
         let beta = d.unactuated;
-        let sensitivity = [&p.stance.beta_p, &p.stance.betad_p, &p.instants.betadd_p].map(|table| &table[node * np..][..np]);
+        let sensitivity =
+            [&p.stance.beta_p, &p.stance.betad_p, &p.instants.betadd_p].map(|table| &table[node * np..][..np]);
 
         // Prescribed coordinates with each other: sparse in the parameters.
         let mut tt = 0.0;
@@ -457,7 +491,8 @@ impl PhaseWork {
                     }
                 }
                 // Columns: the basis of coordinate l, then T.
-                let times = |v: &[f64; 3]| [0, 1, 2].map(|a| block[a][0] * v[0] + block[a][1] * v[1] + block[a][2] * v[2]);
+                let times =
+                    |v: &[f64; 3]| [0, 1, 2].map(|a| block[a][0] * v[0] + block[a][1] * v[1] + block[a][2] * v[2]);
                 let by_duration = times(&by_t[ll]);
                 tt += dot3(&by_t[jj], &by_duration);
                 if ll <= jj {

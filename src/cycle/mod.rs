@@ -3,7 +3,7 @@
 //! Variables, per half step that defines the gait: Q_f, β_f, Q̇_f, β̇_f, interior values of Q, T. The
 //! initial state of a half step follows from the final state of the one before: same configuration,
 //! velocities after the impact, legs renamed where half steps mirror each other (eq. 16, 18, 19).
-//! Equalities: β and β̇ close the cycle (eq. 23, 24, the latter as σ), the swing foot lands, and the
+//! Equalities: β̇ and β close the cycle (eq. 23, 24; the former as σ), the swing foot lands, and the
 //! mean speed is the given one.
 //!
 //! `phase` is one half step, `problem` the nonlinear program, `hessian` its second derivatives.
@@ -272,7 +272,8 @@ impl<'a> Cycle<'a> {
     /// The last simulated motion as numbers.
     pub fn motion(&self) -> Motion {
         let d = self.description();
-        let prescribed = |values: &[f64]| -> Vec<f64> { (0..d.prescribed()).map(|j| values[d.prescribed_index(j)]).collect() };
+        let prescribed =
+            |values: &[f64]| -> Vec<f64> { (0..d.prescribed()).map(|j| values[d.prescribed_index(j)]).collect() };
         let half_step = |p: &Phase| HalfStep {
             duration: p.duration(),
             q_initial: prescribed(&p.q_start),

@@ -80,9 +80,11 @@ impl Cycle<'_> {
                 let time = p.mesh.nodes[node].0 * p.duration();
                 Label { name: self.path[constraint].name.clone(), half_step: phase + 1, time }
             }
-            Row::Impact { phase, constraint } => {
-                Label { name: self.impact.name(constraint).into(), half_step: phase + 1, time: self.phases[phase].duration() }
-            }
+            Row::Impact { phase, constraint } => Label {
+                name: self.impact.name(constraint).into(),
+                half_step: phase + 1,
+                time: self.phases[phase].duration(),
+            },
         }
     }
 

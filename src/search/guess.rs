@@ -26,7 +26,13 @@ pub struct Plan {
 impl Plan {
     /// An upright walk with moderate steps.
     pub fn default_for(d: &Description) -> Plan {
-        Plan { height: 0.85, durations: vec![duration(d, 0.22); d.phases()], clearance: 0.02, lead: 0.0, posture: vec![0.5; joints_per_leg(d)] }
+        Plan {
+            height: 0.85,
+            durations: vec![duration(d, 0.22); d.phases()],
+            clearance: 0.02,
+            lead: 0.0,
+            posture: vec![0.5; joints_per_leg(d)],
+        }
     }
 
     /// A walk drawn at random: tall or crouched, quick or slow, joints bent either way.
@@ -96,9 +102,11 @@ fn half_step(gait: &dyn Gait, plan: &Plan, k: usize, durations: &[f64], travel: 
     let end = solve(1.0, nominal);
     let interior_times = d.polynomial_order - 3;
     let prescribed = |q: &[f64]| -> Vec<f64> { (0..d.prescribed()).map(|j| q[d.prescribed_index(j)]).collect() };
-    let interior = (1..=interior_times).map(|i| prescribed(&solve(i as f64 / (interior_times + 1) as f64, nominal))).collect();
+    let interior =
+        (1..=interior_times).map(|i| prescribed(&solve(i as f64 / (interior_times + 1) as f64, nominal))).collect();
     let delta = 1e-3;
-    let rate = |from: &[f64], to: &[f64]| -> Vec<f64> { from.iter().zip(to).map(|(a, b)| (b - a) / (delta * t)).collect() };
+    let rate =
+        |from: &[f64], to: &[f64]| -> Vec<f64> { from.iter().zip(to).map(|(a, b)| (b - a) / (delta * t)).collect() };
     let initial_rate = rate(&start, &solve(delta, &start));
     let final_rate = rate(&solve(1.0 - delta, &end), &end);
     HalfStep {

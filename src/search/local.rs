@@ -41,7 +41,13 @@ const SMOOTHING: [f64; 2] = [0.12, 0.012];
 
 /// Options of the solver for a problem of this kind.
 pub fn options(cycle: &Cycle) -> Options {
-    Options { tolerance: 1e-6, feasibility: 1e-8, iteration_limit: 400, scale: Some(cycle.scale()), ..Options::default() }
+    Options {
+        tolerance: 1e-6,
+        feasibility: 1e-8,
+        iteration_limit: 400,
+        scale: Some(cycle.scale()),
+        ..Options::default()
+    }
 }
 
 /// Options of the solver where an approximate solution will do.

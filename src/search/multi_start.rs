@@ -44,7 +44,13 @@ pub struct Optimum {
 }
 
 /// Searches from several starts. `done(k)` is told when start `k` has ended.
-pub fn search(gait: &dyn Gait, criterion: Criterion, speed: f64, settings: &Settings, done: &(dyn Fn(usize) + Sync)) -> Found {
+pub fn search(
+    gait: &dyn Gait,
+    criterion: Criterion,
+    speed: f64,
+    settings: &Settings,
+    done: &(dyn Fn(usize) + Sync),
+) -> Found {
     let locals: Vec<Local> = (0..settings.starts.max(1))
         .into_par_iter()
         .map(|k| {

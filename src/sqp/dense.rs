@@ -7,8 +7,8 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let (a4, b4) = (a.chunks_exact(4), b.chunks_exact(4));
     let tail: f64 = a4.remainder().iter().zip(b4.remainder()).map(|(a, b)| a * b).sum();
     for (a, b) in a4.zip(b4) {
-        for k in 0..4 {
-            sums[k] += a[k] * b[k];
+        for (k, sum) in sums.iter_mut().enumerate() {
+            *sum += a[k] * b[k];
         }
     }
     (sums[0] + sums[2]) + (sums[1] + sums[3]) + tail

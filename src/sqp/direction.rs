@@ -6,7 +6,7 @@
 
 use super::dense::{axpy, dot, max_abs, multiply};
 use super::merit::Promise;
-use super::minimize::{Phase, Run};
+use super::run::{Phase, Run};
 use super::screening::Trouble;
 use super::{Kind, Problem};
 
@@ -191,7 +191,8 @@ impl<P: Problem> Run<'_, '_, P> {
             return if descends { Direction::Step } else { Direction::None };
         }
         let hopeless = self.promise.relief <= 0.01 * self.point.violation;
-        if hopeless && self.kkt.stationarity <= self.options.tolerance && self.kkt.violation > self.options.feasibility {
+        if hopeless && self.kkt.stationarity <= self.options.tolerance && self.kkt.violation > self.options.feasibility
+        {
             return Direction::Stationary;
         }
         if self.promise.reduction(1.0) > 0.0 { Direction::Step } else { Direction::None }

@@ -78,14 +78,14 @@ impl Merit {
         self.high = self.high.max(penalty);
     }
 
-    /// Whether going from (f, v) to (f⁺, v⁺) with step length α keeps enough of the promise.
-    pub(super) fn accepts(&mut self, promise: &Promise, alpha: f64, from: (f64, f64), to: (f64, f64)) -> bool {
+    /// Whether going from (f, v) to (f⁺, v⁺) keeps enough of the promise.
+    pub(super) fn accepts(&mut self, promise: &Promise, from: (f64, f64), to: (f64, f64)) -> bool {
         let keeps = |penalty: f64| {
             let promised = promise.reduction(penalty);
             // Changes below the functions' own rounding must not block the last steps.
             let rounding = 1e-15 * (from.0.abs() + penalty * from.1).max(1e-300) * 10.0;
             let change = (to.0 - from.0) + penalty * (to.1 - from.1);
-            promised >= -rounding && change <= -SUFFICIENT * alpha * promised.max(0.0) + rounding
+            promised >= -rounding && change <= -SUFFICIENT * promised.max(0.0) + rounding
         };
         if to.1 > RUNAWAY * self.ceiling.max(1.0) && to.1 > from.1 {
             // The objective has no floor out there, and the penalty is too low to provide one.
@@ -100,14 +100,6 @@ impl Merit {
             self.low = self.high.min(self.low + (0.1 * (price - self.low)).max(1e-4 * self.high));
         }
         by_low || by_high
-    }
-
-    /// A shorter step length from the parabola through φ(0), φ'(0) and φ(α).
-    pub(super) fn interpolate(&self, promise: &Promise, alpha: f64, from: (f64, f64), to: (f64, f64)) -> f64 {
-        let slope = promise.slope - self.high * promise.relief;
-        let change = (to.0 - from.0) + self.high * (to.1 - from.1);
-        let minimum = -0.5 * slope * alpha * alpha / (change - slope * alpha);
-        if minimum.is_finite() { minimum.clamp(0.1 * alpha, 0.5 * alpha) } else { 0.5 * alpha }
     }
 }
 
@@ -128,8 +120,8 @@ mod tests {
         let mut merit = Merit { low: 0.01, high: 10.0, ceiling: 1.0, lowerings: 0 };
         // Less f for more v: good for the low end only.
         let promise = Promise { slope: -1.0, curvature: 0.5, relief: 0.1 };
-        assert!(merit.accepts(&promise, 1.0, (0.0, 0.1), (-0.7, 0.3)));
+        assert!(merit.accepts(&promise, (0.0, 0.1), (-0.7, 0.3)));
         // More of both is good for neither.
-        assert!(!merit.accepts(&promise, 1.0, (0.0, 0.1), (0.1, 0.3)));
+        assert!(!merit.accepts(&promise, (0.0, 0.1), (0.1, 0.3)));
     }
 }

@@ -7,7 +7,8 @@
 //! that matter into the subproblem, and a dense dual active-set method ([`qp::active_set`]) starts it from the last active set.
 //! What makes it robust: capped multipliers turn an inconsistent subproblem into its ℓ1 relaxation with no detour, penalty
 //! steering (Byrd, Nocedal & Waltz 2008) sets their cap, and a phase that looks at the violation alone ends infeasible problems
-//! with a proof, [`Conflict`]. The code reads in the order [`minimize`], `direction`, `line_search`, `screening`, [`qp`].
+//! with a proof, [`Conflict`]; steps are tried in full, corrected to second order, or tried again within a smaller radius (Fletcher's
+//! Sℓ1QP, 1982). Exact or Gauss-Newton Hessians are convexified where they must be; without them, damped BFGS. The code reads in the order [`minimize`], `direction`, `trial`, `screening`, [`qp`].
 //!
 //! ```
 //! use piaffe::sqp::{Control, Options, Problem, Undefined, Values, minimize};
@@ -41,21 +42,25 @@
 //! assert!((solution.objective + 2f64.sqrt()).abs() < 1e-6);
 //! ```
 
+// Several arrays run along one index in most loops here, as in the formulas.
+#![allow(clippy::needless_range_loop)]
+
 mod convexify;
 mod dense;
 mod direction;
 mod eigen;
 mod kkt;
-mod line_search;
 mod merit;
 mod minimize;
 mod options;
 mod problem;
 pub mod qp;
 mod quasi_newton;
+mod run;
 mod scaled;
 mod screening;
 mod status;
+mod trial;
 
 pub use minimize::minimize;
 pub use options::{Control, Iteration, Kind, Options, Subproblems};

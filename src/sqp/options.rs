@@ -15,7 +15,7 @@ pub struct Options {
     pub scale_rows: bool,
     /// Length of the first step that a quasi-Newton method would take without constraints, in scaled variables.
     pub initial_step: f64,
-    /// Largest component of any step, in scaled variables. Infinite: the line search alone limits steps.
+    /// Largest component of any step, in scaled variables. Infinite: only refused steps limit later ones.
     pub step_limit: f64,
     /// First penalty of the ℓ1 merit function; it grows by itself.
     pub penalty: f64,
@@ -63,10 +63,10 @@ pub struct Iteration {
     pub violation: f64,
     /// Scaled stationarity residual with the latest multipliers.
     pub stationarity: f64,
-    /// Fraction of the subproblem's step that led here.
-    pub step: f64,
     /// ‖·‖∞ of the change of the scaled variables that led here.
-    pub length: f64,
+    pub step: f64,
+    /// Bound on that change that the next subproblem respects; infinite while all goes well.
+    pub radius: f64,
     /// Penalty of the merit function.
     pub penalty: f64,
     /// Number of constraints and bounds active in the subproblem that led here.

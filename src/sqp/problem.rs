@@ -23,7 +23,7 @@ pub trait Problem {
     fn inequalities(&self) -> usize;
     /// Bounds on the variables; both slices arrive filled with −∞ and +∞. Trial points never leave the bounds.
     fn bounds(&self, lower: &mut [f64], upper: &mut [f64]);
-    /// Values at `x`. `Err` where the functions are not defined: the line search then backs off.
+    /// Values at `x`. `Err` where the functions are not defined: the solver then tries a shorter step.
     fn evaluate(&mut self, x: &[f64], out: &mut Values) -> Result<(), Undefined>;
     /// Prepares the derivatives at `x`, always the point of the latest `evaluate`.
     fn linearize(&mut self, x: &[f64]) -> Result<(), Undefined>;

@@ -5,13 +5,13 @@
 //! constraints at once (J_I·d is one call); rows it violates are added and the dual method goes on from where it stands. When
 //! none is left, d solves the full subproblem: screening costs rounds, never exactness.
 
+use super::Problem;
 use super::dense::dot;
 use super::options::Subproblems;
 use super::problem::Undefined;
 use super::qp::active_set::ActiveSet;
 use super::qp::{Failure, Place, Quadratic, Step, interior};
 use super::scaled::{Point, Scaled};
-use super::Problem;
 
 /// Up to this many inequalities, screening is not worth its rounds.
 const FEW: usize = 48;
@@ -210,8 +210,11 @@ impl Subproblem {
     fn set_row_constants(&mut self) {
         let equalities = self.equality_constants.len();
         for row in 0..self.qp.len() {
-            let constant =
-                if row < equalities { self.equality_constants[row] } else { self.inequality_constants[self.ids[row - equalities]] };
+            let constant = if row < equalities {
+                self.equality_constants[row]
+            } else {
+                self.inequality_constants[self.ids[row - equalities]]
+            };
             self.qp.constants[row] = constant / self.qp.norms[row];
         }
     }
@@ -256,7 +259,8 @@ impl Subproblem {
     /// The active set of an interior-point solution, and an exact zero for the multipliers outside it.
     fn read_places(&mut self) {
         let n = self.qp.n;
-        let size = 1e-7 * self.step.multipliers.iter().chain(&self.step.bound_multipliers).fold(1e-12, |m: f64, y| m.max(y.abs()));
+        let size = 1e-7
+            * self.step.multipliers.iter().chain(&self.step.bound_multipliers).fold(1e-12, |m: f64, y| m.max(y.abs()));
         for (j, nu) in self.step.bound_multipliers.iter_mut().enumerate() {
             if nu.abs() <= size {
                 *nu = 0.0;

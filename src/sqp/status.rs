@@ -7,7 +7,9 @@ use super::Values;
 pub enum Status {
     /// The optimality conditions hold to the tolerances.
     Optimal,
-    /// A stationary point of the constraint violation that is not feasible; [`Solution::conflict`] says what conflicts.
+    /// A stationary point of the constraint violation that is not feasible; [`Solution::conflict`] says what conflicts, and how
+    /// stationary the violation is: to the tolerance, or where the last digits come too slowly to a thousand times that.
+    /// The multipliers and [`Solution::kkt`] are then those of the violation.
     Infeasible,
     /// No further progress is possible at the precision of the functions; [`Solution::kkt`] says how close this is.
     NoProgress,

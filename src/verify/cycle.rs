@@ -18,7 +18,12 @@ pub fn stance_leg(description: &Description, index: usize) -> usize {
 
 /// Notes the constraints on the impact that ends half step `index`, and returns how far the initial
 /// state of the one after it is from what follows (eq. 16, 18, 19): rad, and rad/s over max(1, rate).
-pub fn transition(description: &Description, motion: &Motion, index: usize, tally: &mut Tally) -> Result<f64, VerifyError> {
+pub fn transition(
+    description: &Description,
+    motion: &Motion,
+    index: usize,
+    tally: &mut Tally,
+) -> Result<f64, VerifyError> {
     let before = &motion.half_steps[index];
     let after = &motion.half_steps[(index + 1) % motion.half_steps.len()];
     let q = complete(description, &before.q_final, before.beta_final);
@@ -29,7 +34,11 @@ pub fn transition(description: &Description, motion: &Motion, index: usize, tall
     let momentum = description.total_mass();
     let (impulse, t) = (impact.impulse, before.duration);
     tally.note(Constraint::VerticalImpulse, impulse.y / momentum, t);
-    tally.note(Constraint::ImpulseFriction, (description.limits.friction * impulse.y - tangential(&impulse)) / momentum, t);
+    tally.note(
+        Constraint::ImpulseFriction,
+        (description.limits.friction * impulse.y - tangential(&impulse)) / momentum,
+        t,
+    );
     tally.note(Constraint::Leaving, impact.leaving.y, t);
 
     let rates = &impact.after[description.positions()..];

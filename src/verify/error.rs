@@ -12,7 +12,9 @@ pub const SMALLEST_GRID: usize = 5;
 pub enum VerifyError {
     #[error("the {gait} is defined by {expected} half step(s), the motion has {found}")]
     HalfSteps { gait: &'static str, expected: usize, found: usize },
-    #[error("half step {half_step}: `{list}` has {found} numbers, one for each of {expected} prescribed coordinates is needed")]
+    #[error(
+        "half step {half_step}: `{list}` has {found} numbers, one for each of {expected} prescribed coordinates is needed"
+    )]
     Length { half_step: usize, list: String, expected: usize, found: usize },
     #[error("half step {half_step}: `{list}` contains a number that is not finite")]
     NotFinite { half_step: usize, list: String },
@@ -28,7 +30,9 @@ pub enum VerifyError {
     Blowup { half_step: usize, time: f64 },
     #[error("half step {half_step}: the integration of β takes too many steps; it was given up at t = {time:.6} s")]
     Steps { half_step: usize, time: f64 },
-    #[error("half step {half_step}: at t = {time:.6} s the torques do not follow from the motion, because f1 vanishes (eq. 10)")]
+    #[error(
+        "half step {half_step}: at t = {time:.6} s the torques do not follow from the motion, because f1 vanishes (eq. 10)"
+    )]
     Singular { half_step: usize, time: f64 },
     #[error("half step {half_step}: the velocities after the impact are not determined (eq. 12)")]
     Impact { half_step: usize },

@@ -32,7 +32,12 @@ struct Judge<'a> {
 }
 
 /// Evaluates `points` instants of a half step and notes the margins.
-pub fn evaluate(description: &Description, phase: &mut Phase, points: usize, tally: &mut Tally) -> Result<Totals, VerifyError> {
+pub fn evaluate(
+    description: &Description,
+    phase: &mut Phase,
+    points: usize,
+    tally: &mut Tally,
+) -> Result<Totals, VerifyError> {
     let weight = description.total_mass() * description.gravity;
     let judge = Judge { description, weight, leg: leg_length(description) };
     let joints = description.joints();

@@ -132,7 +132,11 @@ impl<'a> Multibody<'a> {
     /// The mass centre of a body, relative to the platform's.
     pub fn com(&self, body: usize) -> Point {
         let com = self.frames[body].com;
-        Point { position: com.position, velocity: self.in_plane(com.velocity), acceleration: self.in_plane(com.acceleration) }
+        Point {
+            position: com.position,
+            velocity: self.in_plane(com.velocity),
+            acceleration: self.in_plane(com.acceleration),
+        }
     }
 
     /// Angular velocity of a body, rad/s.
@@ -227,7 +231,8 @@ impl<'a> Multibody<'a> {
         for (b, body) in self.description.bodies.iter().enumerate() {
             let com = self.com(b);
             let spin = self.spin(b);
-            kinetic += 0.5 * body.mass * (pd + com.velocity).norm_squared() + 0.5 * spin.dot(&self.spin_momentum(b, &spin));
+            kinetic +=
+                0.5 * body.mass * (pd + com.velocity).norm_squared() + 0.5 * spin.dot(&self.spin_momentum(b, &spin));
             potential += body.mass * self.description.gravity * (p.y + com.position.y);
         }
         for (joint, rate) in self.description.joints.iter().zip(qd) {

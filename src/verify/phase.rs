@@ -45,7 +45,16 @@ impl State {
     pub fn new(description: &Description) -> State {
         let (n, joints) = (description.orientations(), description.joints());
         let (q, zero) = (vec![0.0; n], Vec3::zeros());
-        State { qd: q.clone(), qdd: q.clone(), q, torques: vec![0.0; joints], force: zero, platform: zero, swing: zero, swing_velocity: zero }
+        State {
+            qd: q.clone(),
+            qdd: q.clone(),
+            q,
+            torques: vec![0.0; joints],
+            force: zero,
+            platform: zero,
+            swing: zero,
+            swing_velocity: zero,
+        }
     }
 
     fn prescribe(&mut self, description: &Description, polynomials: &Polynomials, t: f64) {
@@ -58,7 +67,12 @@ impl State {
 
 impl<'a> Phase<'a> {
     /// Integrates β over half step `number`, 1-based.
-    pub fn new(description: &'a Description, half_step: &HalfStep, leg: usize, number: usize) -> Result<Self, VerifyError> {
+    pub fn new(
+        description: &'a Description,
+        half_step: &HalfStep,
+        leg: usize,
+        number: usize,
+    ) -> Result<Self, VerifyError> {
         check_half_step(half_step, description.prescribed(), number)?;
         let polynomials = Polynomials::new(half_step);
         let mut support = Support::new(description, leg);
@@ -71,7 +85,8 @@ impl<'a> Phase<'a> {
             Some([y[1], support.accelerate(&state.q, &state.qd, &mut state.qdd)?])
         };
         let initial = [half_step.beta_initial, half_step.betad_initial];
-        let beta = integrate(rate, 0.0, half_step.duration, initial, TOLERANCE).map_err(|stop| VerifyError::stopped(stop, number))?;
+        let beta = integrate(rate, 0.0, half_step.duration, initial, TOLERANCE)
+            .map_err(|stop| VerifyError::stopped(stop, number))?;
         Ok(Phase { leg, duration: half_step.duration, number, support, polynomials, beta, cursor: 0 })
     }
 

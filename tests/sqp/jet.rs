@@ -30,14 +30,8 @@ pub trait Scalar:
     fn ln(self) -> Self {
         self.apply(|x| [x.ln(), 1.0 / x, -1.0 / (x * x)])
     }
-    fn sqrt(self) -> Self {
-        self.apply(|x| [x.sqrt(), 0.5 / x.sqrt(), -0.25 / (x * x.sqrt())])
-    }
     fn sin(self) -> Self {
         self.apply(|x| [x.sin(), x.cos(), -x.sin()])
-    }
-    fn cos(self) -> Self {
-        self.apply(|x| [x.cos(), -x.sin(), -x.cos()])
     }
     fn recip(self) -> Self {
         self.apply(|x| [1.0 / x, -1.0 / (x * x), 2.0 / (x * x * x)])
@@ -110,6 +104,7 @@ impl<const N: usize> Mul for Jet<N> {
 }
 impl<const N: usize> Div for Jet<N> {
     type Output = Self;
+    #[allow(clippy::suspicious_arithmetic_impl)]
     fn div(self, b: Self) -> Self {
         self * b.recip()
     }

@@ -4,6 +4,7 @@ use super::model::{INF, print};
 use piaffe::sqp::{Control, Options, Problem, Solution, Status, Undefined, Values, minimize};
 
 type Function = Box<dyn Fn(&[f64]) -> f64>;
+type Domain = Box<dyn Fn(&[f64]) -> bool>;
 
 /// A problem of closures with central differences: slow, and independent of every derivative formula.
 pub struct Numeric {
@@ -13,7 +14,7 @@ pub struct Numeric {
     pub inequalities: Vec<Function>,
     pub lower: Vec<f64>,
     pub upper: Vec<f64>,
-    pub defined: Box<dyn Fn(&[f64]) -> bool>,
+    pub defined: Domain,
     at: Vec<f64>,
 }
 
@@ -284,7 +285,10 @@ fn the_same_bits_twice() {
     let (a, b) = (rosenbrock_in_a_disc().solve(&[-1.0, 1.0]), rosenbrock_in_a_disc().solve(&[-1.0, 1.0]));
     assert_eq!(a.status, Status::Optimal);
     assert_eq!(a, b);
-    assert_eq!(a.x.iter().map(|x| x.to_bits()).collect::<Vec<_>>(), b.x.iter().map(|x| x.to_bits()).collect::<Vec<_>>());
+    assert_eq!(
+        a.x.iter().map(|x| x.to_bits()).collect::<Vec<_>>(),
+        b.x.iter().map(|x| x.to_bits()).collect::<Vec<_>>()
+    );
 }
 
 #[test]
@@ -308,7 +312,8 @@ fn scaling_changes_neither_solution_nor_units() {
 /// Multipliers of the solution satisfy ∇f = J_Eᵀλ + J_Iᵀμ + ν in the problem's own units.
 #[test]
 fn multipliers_explain_the_gradient() {
-    let mut problem = Numeric::new(2, |x| (x[0] - 3.0).powi(2) + (x[1] - 2.0).powi(2)).at_least_zero(|x| 4.0 - x[0] - x[1]);
+    let mut problem =
+        Numeric::new(2, |x| (x[0] - 3.0).powi(2) + (x[1] - 2.0).powi(2)).at_least_zero(|x| 4.0 - x[0] - x[1]);
     problem.upper[1] = 0.5;
     let solution = problem.solve(&[0.0, 0.0]);
     assert_eq!(solution.status, Status::Optimal);
@@ -321,9 +326,13 @@ fn multipliers_explain_the_gradient() {
 /// No multiplier exists at the solution (Hock & Schittkowski 13): the solver must neither panic nor lie.
 #[test]
 fn a_cusp_is_approached_honestly() {
-    let mut problem = Numeric::new(2, |x| (x[0] - 2.0).powi(2) + x[1] * x[1]).at_least_zero(|x| (1.0 - x[0]).powi(3) - x[1]);
+    let mut problem =
+        Numeric::new(2, |x| (x[0] - 2.0).powi(2) + x[1] * x[1]).at_least_zero(|x| (1.0 - x[0]).powi(3) - x[1]);
     problem.lower.fill(0.0);
     let solution = problem.solve(&[-2.0, -2.0]);
-    println!("cusp: {:?} x {:?} kkt {:?} iterations {}", solution.status, solution.x, solution.kkt, solution.iterations);
+    println!(
+        "cusp: {:?} x {:?} kkt {:?} iterations {}",
+        solution.status, solution.x, solution.kkt, solution.iterations
+    );
     assert!((solution.objective - 1.0).abs() < 0.05, "{:?}", solution.x);
 }

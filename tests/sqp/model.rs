@@ -104,13 +104,13 @@ pub fn print(line: &Iteration) -> Control {
 /// Prints a line of the log.
 pub fn show(line: &Iteration) -> Control {
     println!(
-        "{:4} {:15.8e} v {:8.1e} s {:8.1e} α {:7.1e} |s| {:7.1e} ρ {:7.1e} active {:2} rows {:3} {:?}",
+        "{:4} {:15.8e} v {:8.1e} s {:8.1e} |s| {:7.1e} radius {:7.1e} ρ {:7.1e} active {:2} rows {:3} {:?}",
         line.k,
         line.objective,
         line.violation,
         line.stationarity,
         line.step,
-        line.length,
+        line.radius,
         line.penalty,
         line.active,
         line.rows,

@@ -1,4 +1,5 @@
 //! The dual active-set method against Clarabel.
+#![allow(clippy::needless_range_loop)]
 
 use super::random::Random;
 use piaffe::sqp::qp::active_set::ActiveSet;
@@ -85,7 +86,10 @@ fn compare(qp: &Quadratic) -> Result<(), TestCaseError> {
             let gap = (value(qp, &ours.d) - value(qp, &theirs.d)).abs();
             let apart = ours.d.iter().zip(&theirs.d).fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
             let (reach, size) = (ours.d.iter().fold(1.0, |m: f64, d| m.max(d.abs())), 1.0 + value(qp, &ours.d).abs());
-            prop_assert!(apart < 1e-4 * reach || gap < 1e-6 * size, "apart {apart:e} of {reach:e}, gap {gap:e} of {size:e}");
+            prop_assert!(
+                apart < 1e-4 * reach || gap < 1e-6 * size,
+                "apart {apart:e} of {reach:e}, gap {gap:e} of {size:e}"
+            );
             Ok(())
         }
         (Ok(_), Err(Failure::Inaccurate)) | (Err(Failure::Inconsistent), Err(_)) => Ok(()),

@@ -11,7 +11,11 @@ fn compare(what: &str, gait: &dyn Gait, numeric: &[f64], generated: &[f64]) {
     assert_eq!(numeric.len(), generated.len(), "{what}");
     let scale = generated.iter().fold(1.0, |m: f64, x| m.max(x.abs()));
     for (a, b) in numeric.iter().zip(generated) {
-        assert!((a - b).abs() <= TOLERANCE * scale, "{what} of the {}: {numeric:?} instead of {generated:?}", gait.description().gait);
+        assert!(
+            (a - b).abs() <= TOLERANCE * scale,
+            "{what} of the {}: {numeric:?} instead of {generated:?}",
+            gait.description().gait
+        );
     }
 }
 
@@ -45,7 +49,12 @@ fn floating_model_agrees() {
                 compare("d", gait, &foot.position.as_slice()[..np], &filled(np, |o| gait.foot(leg, &x, o)));
                 let jacobian = filled(n * np, |o| multibody.foot_jacobian(leg, o));
                 compare("D", gait, &jacobian, &filled(n * np, |o| gait.foot_jacobian(leg, &q, o)));
-                compare("Hi", gait, &foot.acceleration.as_slice()[..np], &filled(np, |o| gait.foot_bias(leg, &q, &qd, o)));
+                compare(
+                    "Hi",
+                    gait,
+                    &foot.acceleration.as_slice()[..np],
+                    &filled(np, |o| gait.foot_bias(leg, &q, &qd, o)),
+                );
             }
         }
     }

@@ -60,7 +60,9 @@ fn half_step(d: &Description, stance: usize, duration: f64) -> HalfStep {
     let end = order([-reach, -height], [reach, -height]);
     let still = order([-speed, 0.0], [speed, 0.3]);
     let falling = order([-speed, 0.0], [speed, -0.3]);
-    let choose = |q: Vec<f64>| (0..d.prescribed()).map(|k| q.get(d.prescribed_index(k)).copied().unwrap_or(0.0)).collect::<Vec<_>>();
+    let choose = |q: Vec<f64>| {
+        (0..d.prescribed()).map(|k| q.get(d.prescribed_index(k)).copied().unwrap_or(0.0)).collect::<Vec<_>>()
+    };
     let beta = |q: &[f64], theta: f64| q.get(d.unactuated).copied().unwrap_or(theta);
     let (theta, rate) = match d.rotation {
         Rotation::None => (0.0, 0.0),

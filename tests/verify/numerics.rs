@@ -21,7 +21,8 @@ fn polynomials_meet_their_conditions() {
             betad_final: 0.0,
         };
         let polynomials = Polynomials::new(&h);
-        let near = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-12, "{found} instead of {expected}");
+        let near =
+            |found: f64, expected: f64| assert!((found - expected).abs() < 1e-12, "{found} instead of {expected}");
         for k in 0..2 {
             let ([begin, first_rate, _], [end, last_rate, _]) = (polynomials.at(k, 0.0), polynomials.at(k, h.duration));
             near(begin, h.q_initial[k]);

@@ -54,7 +54,11 @@ fn momentum_about_the_stance_foot_changes_by_gravity_alone() {
             });
             gait.momentum_terms(leg, &five[2].q, &five[2].qd, &mut terms);
             let (found, moment) = (rate(sigma, h), terms[4]);
-            assert!((found - moment).abs() < 1e-6 * moment.abs().max(1.0), "{}: {found} N·m instead of {moment} N·m", gait.description().gait);
+            assert!(
+                (found - moment).abs() < 1e-6 * moment.abs().max(1.0),
+                "{}: {found} N·m instead of {moment} N·m",
+                gait.description().gait
+            );
         });
     }
 }
@@ -76,7 +80,11 @@ fn the_reaction_moves_the_mass_centre() {
                 let weight = if axis == 1 { d.total_mass() * d.gravity } else { 0.0 };
                 let found = rate(momenta.map(|m| m[axis]), h) + weight;
                 let force = five[2].force[axis];
-                assert!((found - force).abs() < 1e-6 * force.abs().max(100.0), "{}: {found} N instead of {force} N", d.gait);
+                assert!(
+                    (found - force).abs() < 1e-6 * force.abs().max(100.0),
+                    "{}: {found} N instead of {force} N",
+                    d.gait
+                );
             }
         });
     }

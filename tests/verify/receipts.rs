@@ -13,7 +13,11 @@ fn names(receipt: &Receipt) -> Vec<&str> {
 }
 
 fn found<'r>(receipt: &'r Receipt, name: &str) -> &'r Finding {
-    receipt.active.iter().find(|f| f.constraint == name).unwrap_or_else(|| panic!("`{name}` is not among {:?}", names(receipt)))
+    receipt
+        .active
+        .iter()
+        .find(|f| f.constraint == name)
+        .unwrap_or_else(|| panic!("`{name}` is not among {:?}", names(receipt)))
 }
 
 #[test]
@@ -146,7 +150,9 @@ fn a_foot_above_the_ground_at_the_end_is_found() {
 fn every_half_step_has_its_findings() {
     let d = changed(&Curvet, |d| d.limits.min_vertical_force = 1e4);
     let receipt = verify(&d, &stepping(&d), 0.3, GRID).unwrap();
-    let of = |half_step| receipt.active.iter().filter(|f| f.constraint == "vertical force" && f.half_step == half_step).count();
+    let of = |half_step| {
+        receipt.active.iter().filter(|f| f.constraint == "vertical force" && f.half_step == half_step).count()
+    };
     assert_eq!((of(1), of(2)), (1, 1));
     assert_eq!(receipt.peaks.len(), 4);
     assert!(receipt.peaks.iter().all(|p| p.torque > 0.0 && p.speed > 0.0 && p.envelope_margin < 1.0));
@@ -177,7 +183,10 @@ fn what_cannot_be_verified_is_refused_with_a_reason() {
     assert!(matches!(refused(&|h| h.duration = f64::NAN), VerifyError::Duration { .. }));
     assert!(matches!(refused(&|h| h.q_interior[0].truncate(1)), VerifyError::Length { expected: 3, found: 1, .. }));
     assert!(matches!(refused(&|h| h.qd_final[0] = f64::INFINITY), VerifyError::NotFinite { .. }));
-    assert!(matches!(refused(&|h| h.betad_initial = 1e9), VerifyError::Blowup { .. } | VerifyError::Steps { .. } | VerifyError::Singular { .. }));
+    assert!(matches!(
+        refused(&|h| h.betad_initial = 1e9),
+        VerifyError::Blowup { .. } | VerifyError::Steps { .. } | VerifyError::Singular { .. }
+    ));
     assert_eq!(verify(d, &good, f64::NAN, GRID).unwrap_err().to_string(), "the speed must be finite, not NaN m/s");
     assert_eq!(verify(d, &good, 0.3, 2), Err(VerifyError::Grid(2)));
     let two = piaffe::motion::Motion { half_steps: [&good.half_steps[..], &good.half_steps[..]].concat() };

@@ -19,10 +19,10 @@ pub fn gait_source(mechanism: &Mechanism, runtime: &str, origin: &str) -> Result
     let mut structs = BTreeSet::new();
     let mut items = TokenStream::new();
     for function in &functions {
-        if let Some((name, source)) = function.output_struct() {
-            if structs.insert(name) {
-                items.extend(source);
-            }
+        if let Some((name, source)) = function.output_struct()
+            && structs.insert(name)
+        {
+            items.extend(source);
         }
         items.extend(function.source());
     }

@@ -12,7 +12,7 @@
 
 use super::factor::Factor;
 use super::{Failure, Place, Quadratic, Step};
-use crate::sqp::dense::{axpy, dot, max_abs, multiply};
+use crate::sqp::dense::{dot, max_abs};
 
 /// Part of a normal that must be independent of the working set, relative to its length (in the metric of H⁻¹).
 const INDEPENDENT: f64 = 1e-9;
@@ -33,23 +33,23 @@ const ACCEPT: f64 = 1e-9;
 /// Workspace of the method.
 #[derive(Clone, Debug, Default)]
 pub struct ActiveSet {
-    n: usize,
-    factor: Factor,
+    pub(super) n: usize,
+    pub(super) factor: Factor,
     /// Constraints of the working set, in the order of the factorization. Ids: 0..n lower bounds, n..2n upper, then rows.
-    working: Vec<usize>,
-    place: Vec<Place>,
+    pub(super) working: Vec<usize>,
+    pub(super) place: Vec<Place>,
     /// Constraints whose violation is a matter of rounding.
     excused: Vec<bool>,
     /// Next candidates with their violation when last looked at, the largest last.
     queue: Vec<(f64, usize)>,
     queue_length: usize,
     /// Multipliers by id; bounds have nonnegative ones here.
-    y: Vec<f64>,
-    d: Vec<f64>,
-    w: Vec<f64>,
-    u: Vec<f64>,
-    change: Vec<f64>,
-    scratch: Vec<f64>,
+    pub(super) y: Vec<f64>,
+    pub(super) d: Vec<f64>,
+    pub(super) w: Vec<f64>,
+    pub(super) u: Vec<f64>,
+    pub(super) change: Vec<f64>,
+    pub(super) scratch: Vec<f64>,
     result: Step,
     /// Working-set changes since `solve`.
     pub(in crate::sqp) changes: usize,
@@ -144,181 +144,6 @@ impl ActiveSet {
         &self.place
     }
 
-    fn extend(&mut self, qp: &Quadratic) {
-        self.place.resize(2 * self.n + qp.len(), Place::Off);
-        self.y.resize(2 * self.n + qp.len(), 0.0);
-    }
-
-    // --- one constraint -----------------------------------------------------------------------------------------------
-
-    fn exists(&self, qp: &Quadratic, id: usize) -> bool {
-        let n = self.n;
-        if id < n {
-            qp.lower[id].is_finite()
-        } else if id < 2 * n {
-            qp.upper[id - n].is_finite()
-        } else {
-            true
-        }
-    }
-
-    fn limit(&self, qp: &Quadratic, id: usize) -> f64 {
-        if id < 2 * self.n { f64::INFINITY } else { qp.limits[id - 2 * self.n] }
-    }
-
-    fn equality(&self, qp: &Quadratic, id: usize) -> bool {
-        id >= 2 * self.n && qp.equality[id - 2 * self.n]
-    }
-
-    /// The constant b of aᵀd + b.
-    fn constant(&self, qp: &Quadratic, id: usize) -> f64 {
-        let n = self.n;
-        if id < n {
-            -qp.lower[id]
-        } else if id < 2 * n {
-            qp.upper[id - n]
-        } else {
-            qp.constants[id - 2 * n]
-        }
-    }
-
-    /// aᵀd + b.
-    fn value(&self, qp: &Quadratic, id: usize) -> f64 {
-        let n = self.n;
-        if id < n {
-            self.d[id] - qp.lower[id]
-        } else if id < 2 * n {
-            qp.upper[id - n] - self.d[id - n]
-        } else {
-            dot(qp.row(id - 2 * n), &self.d) + qp.constants[id - 2 * n]
-        }
-    }
-
-    /// w ← Jᵀa.
-    fn project(&mut self, qp: &Quadratic, id: usize) {
-        let n = self.n;
-        if id < n {
-            self.factor.project_unit(id, 1.0, &mut self.w);
-        } else if id < 2 * n {
-            self.factor.project_unit(id - n, -1.0, &mut self.w);
-        } else {
-            self.factor.project(qp.row(id - 2 * n), &mut self.w);
-        }
-    }
-
-    /// out ← out + α·a.
-    fn accumulate(n: usize, qp: &Quadratic, id: usize, alpha: f64, out: &mut [f64]) {
-        if id < n {
-            out[id] += alpha;
-        } else if id < 2 * n {
-            out[id - n] -= alpha;
-        } else {
-            axpy(alpha, qp.row(id - 2 * n), out);
-        }
-    }
-
-    fn independent(&self, threshold: f64) -> bool {
-        let q = self.factor.q;
-        let free = dot(&self.w[q..], &self.w[q..]);
-        free > threshold * threshold * dot(&self.w, &self.w)
-    }
-
-    fn enter(&mut self, id: usize) {
-        self.factor.add(&self.w);
-        self.working.push(id);
-        self.place[id] = Place::Working;
-    }
-
-    fn leave(&mut self, qp: &Quadratic, k: usize, place: Place) {
-        self.factor.remove(k);
-        let id = self.working.remove(k);
-        match place {
-            Place::Full | Place::Empty => self.saturate(qp, id, place),
-            Place::Off | Place::Working => {
-                self.place[id] = Place::Off;
-                self.y[id] = 0.0;
-            }
-        }
-        self.changes += 1;
-    }
-
-    fn saturate(&mut self, qp: &Quadratic, id: usize, side: Place) {
-        let limit = self.limit(qp, id);
-        self.place[id] = side;
-        self.y[id] = if side == Place::Empty { -limit } else { limit };
-    }
-
-    // --- the equality-constrained program of the working set ------------------------------------------------------------
-
-    /// Corrects d and the working multipliers so that Hd + g = Aᵀy and the working set holds as equations, given what
-    /// `scratch` holds of the former residual and the present values of the working set.
-    fn correct(&mut self, qp: &Quadratic) {
-        let q = self.factor.q;
-        // J-coordinates: u₁ from the constraints, u₂ from stationarity (see the module header of `factor`).
-        self.factor.project(&self.scratch, &mut self.w);
-        for k in 0..q {
-            self.change[k] = -self.value(qp, self.working[k]);
-        }
-        self.factor.solve_transposed(&self.change, &mut self.u);
-        for k in q..self.n {
-            self.u[k] = -self.w[k];
-        }
-        for k in 0..q {
-            self.w[k] += self.u[k];
-        }
-        self.factor.solve(&self.w, &mut self.change);
-        self.factor.expand(&self.u, &mut self.d);
-        for (k, &id) in self.working.iter().enumerate() {
-            self.y[id] += self.change[k];
-        }
-    }
-
-    /// scratch ← Hd + g − Aᵀy.
-    fn stationarity(&mut self, qp: &Quadratic) {
-        multiply(&qp.hessian, &self.d, &mut self.scratch);
-        axpy(1.0, &qp.gradient, &mut self.scratch);
-        for (id, &y) in self.y.iter().enumerate() {
-            if y != 0.0 {
-                Self::accumulate(self.n, qp, id, -y, &mut self.scratch);
-            }
-        }
-    }
-
-    /// Solves for the working set and drops constraints until every multiplier is within its limits.
-    fn make_dual_feasible(&mut self, qp: &Quadratic) -> Result<(), Failure> {
-        loop {
-            self.d.fill(0.0);
-            for &id in &self.working {
-                self.y[id] = 0.0;
-            }
-            self.stationarity(qp);
-            self.correct(qp);
-            let mut worst = (0.0, 0, Place::Off);
-            for (k, &id) in self.working.iter().enumerate() {
-                let (y, limit) = (self.y[id], self.limit(qp, id));
-                let (excess, place) = if y > limit {
-                    (y - limit, Place::Full)
-                } else if self.equality(qp, id) {
-                    (-limit - y, Place::Empty)
-                } else {
-                    (-y, Place::Off)
-                };
-                if !excess.is_finite() && excess != f64::NEG_INFINITY {
-                    return Err(Failure::Inaccurate);
-                }
-                if excess > worst.0 {
-                    worst = (excess, k, place);
-                }
-            }
-            if worst.0 == 0.0 {
-                return Ok(());
-            }
-            self.leave(qp, worst.1, worst.2);
-        }
-    }
-
-    // --- the dual ascent ------------------------------------------------------------------------------------------------
-
     /// By how much a constraint contradicts optimality, and the direction in which its multiplier has to go.
     fn contradiction(&self, qp: &Quadratic, id: usize, reach: f64) -> Option<(f64, f64)> {
         if !self.exists(qp, id) {
@@ -343,13 +168,27 @@ impl ActiveSet {
     fn pick(&mut self, qp: &Quadratic) -> Option<(usize, f64)> {
         let reach = 1.0 + max_abs(&self.d);
         while let Some((former, id)) = self.queue.pop() {
-            if let Some((violation, sign)) = self.contradiction(qp, id, reach) {
-                if violation >= 0.3 * former {
-                    return Some((id, sign));
-                }
+            if let Some((violation, sign)) = self.contradiction(qp, id, reach)
+                && violation >= 0.3 * former
+            {
+                return Some((id, sign));
             }
         }
         for id in 0..self.place.len() {
+            // Most rows are in order, and cheaply seen to be.
+            if id >= 2 * self.n {
+                let i = id - 2 * self.n;
+                let value = dot(qp.row(i), &self.d) + qp.constants[i];
+                let in_order = match self.place[id] {
+                    Place::Working => true,
+                    Place::Off => value >= 0.0 && !qp.equality[i],
+                    Place::Full => value <= 0.0,
+                    Place::Empty => value >= 0.0,
+                };
+                if in_order {
+                    continue;
+                }
+            }
             if let Some((mut violation, _)) = self.contradiction(qp, id, reach) {
                 if self.equality(qp, id) && self.place[id] == Place::Off {
                     violation = f64::MAX;

@@ -17,12 +17,12 @@ const ACCEPT: f64 = 1e-6;
 pub fn solve(qp: &Quadratic) -> Result<Step, Failure> {
     // Prices far above the gradient ask for hard constraints; as slack costs they would drown everything else in rounding.
     let size = qp.gradient.iter().fold(1.0_f64, |size, g| size.max(g.abs()));
-    if qp.limits.iter().any(|limit| limit.is_finite()) && qp.limits.iter().all(|limit| *limit > 1e4 * size) {
-        if let Ok(step) = solve_capped(qp, true) {
-            if step.multipliers.iter().zip(&qp.limits).all(|(y, limit)| y.abs() < *limit) {
-                return Ok(step);
-            }
-        }
+    if qp.limits.iter().any(|limit| limit.is_finite())
+        && qp.limits.iter().all(|limit| *limit > 1e4 * size)
+        && let Ok(step) = solve_capped(qp, true)
+        && step.multipliers.iter().zip(&qp.limits).all(|(y, limit)| y.abs() < *limit)
+    {
+        return Ok(step);
     }
     solve_capped(qp, false)
 }

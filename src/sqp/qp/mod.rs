@@ -13,6 +13,7 @@
 pub mod active_set;
 mod factor;
 pub mod interior;
+mod working_set;
 
 use super::dense::{dot, max_abs, multiply, norm};
 

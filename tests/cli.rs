@@ -1,0 +1,116 @@
+//! The program as a person runs it.
+
+use serde_json::Value;
+use std::io::Write;
+use std::process::{Command, Output, Stdio};
+
+fn piaffe(arguments: &[&str], input: &str) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_piaffe"))
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(input.as_bytes()).unwrap();
+    child.wait_with_output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+fn fixture(gait: &str) -> String {
+    std::fs::read_to_string(format!("{}/tests/fixtures/dynamics_{gait}.json", env!("CARGO_MANIFEST_DIR"))).unwrap()
+}
+
+#[test]
+fn dynamics_takes_a_fixture_file_and_prints_its_keys() {
+    for gait in ["trot", "amble", "curvet"] {
+        let out = piaffe(&["dynamics", gait, "-"], &fixture(gait));
+        assert!(out.status.success(), "{}", text(&out.stderr));
+        let found: Value = serde_json::from_slice(&out.stdout).unwrap();
+        let expected: Value = serde_json::from_str(&fixture(gait)).unwrap();
+        assert_eq!(found["gait"], gait);
+        let (found, expected) = (&found["states"][0], &expected["states"][0]);
+        for key in expected.as_object().unwrap().keys() {
+            assert!(found.get(key).is_some(), "{gait}: `{key}` is missing");
+        }
+    }
+}
+
+#[test]
+fn a_level_touchdown_of_the_amble_is_reported_as_singular() {
+    let state =
+        r#"{"states": [{"X": [0, 0.28, 0, 0.4, -0.8, -0.4, 0.8, 0], "Xdot": [0.5, 0, 0.1, 1, 0, -1, 0, 0.3]}]}"#;
+    let out = piaffe(&["dynamics", "amble", "-"], state);
+    let found: Value = serde_json::from_slice(&out.stdout).unwrap();
+    let impact = &found["states"][0]["impact11"];
+    assert!(impact["singular"].is_string() && impact.get("Xdot_plus").is_none(), "{impact}");
+    assert!(found["states"][0]["impact12_leg1"]["Xdot_plus"].is_array());
+}
+
+#[test]
+fn bad_input_is_named_with_its_place() {
+    let out = piaffe(&["dynamics", "trot", "-"], "{\"states\": [\n  {\"X\": [0, 1,}\n]}");
+    assert_eq!(out.status.code(), Some(1));
+    assert!(text(&out.stderr).contains("standard input:2:"), "{}", text(&out.stderr));
+
+    let out = piaffe(&["dynamics", "trot", "-"], r#"{"states": [{"X": [0, 1], "Xdot": [0]}]}"#);
+    assert!(text(&out.stderr).contains("`X` has 2 numbers, the trot needs 6"), "{}", text(&out.stderr));
+
+    let out = piaffe(&["dynamics", "trot", "/nonexistent.json"], "");
+    assert!(text(&out.stderr).contains("cannot read /nonexistent.json"));
+
+    let out = piaffe(&["optimize", "trott", "--speed", "0.6"], "");
+    assert_eq!(out.status.code(), Some(2));
+    assert!(text(&out.stderr).contains("trot"), "{}", text(&out.stderr));
+
+    let out = piaffe(&["optimize", "trot", "--speed", "-1"], "");
+    assert_eq!(out.status.code(), Some(2));
+}
+
+#[test]
+fn optimize_writes_json_with_a_receipt() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("trot.json");
+    let out = piaffe(
+        &[
+            "optimize",
+            "trot",
+            "--criterion",
+            "torque",
+            "--speed",
+            "0.6",
+            "--starts",
+            "2",
+            "--json",
+            file.to_str().unwrap(),
+        ],
+        "",
+    );
+    assert!(out.status.success(), "{}", text(&out.stderr));
+    assert!(text(&out.stdout).contains("receipt"));
+    let result: Value = serde_json::from_str(&std::fs::read_to_string(&file).unwrap()).unwrap();
+    for key in ["gait", "criterion", "speed", "status", "cost", "durations", "step_length", "variables", "seconds"] {
+        assert!(!result[key].is_null(), "`{key}` is missing");
+    }
+    for key in ["energy", "torque"] {
+        assert!(result["costs"][key].is_f64());
+    }
+    for key in ["max_violation", "cycle_error", "kkt_residual", "active"] {
+        assert!(!result["receipt"][key].is_null(), "receipt.{key} is missing");
+    }
+    assert_eq!(result["status"], "optimal");
+    // Nothing but the result was left behind.
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn an_infeasible_speed_is_said_and_fails() {
+    let out = piaffe(&["optimize", "trot", "--speed", "5", "--starts", "2", "--json", "-"], "");
+    assert_eq!(out.status.code(), Some(3));
+    let result: Value = serde_json::from_slice(&out.stdout).unwrap();
+    assert_eq!(result["status"], "infeasible");
+    assert!(result["cost"].is_null() && !result["conflicts"].as_array().unwrap().is_empty());
+}

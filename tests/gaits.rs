@@ -1,0 +1,126 @@
+//! The whole way: from geometry to an optimum with a receipt, for every gait and criterion.
+
+use piaffe::gaits::GAITS;
+use piaffe::model::Gait;
+use piaffe::motion::{Criterion, Motion};
+use piaffe::result::{GaitResult, Status, VIOLATION};
+use piaffe::search::multi_start::{Settings, search};
+use piaffe::verify::{sample, verify};
+
+fn optimize(gait: &dyn Gait, criterion: Criterion, speed: f64, starts: usize) -> GaitResult {
+    let settings = Settings { starts, seed: 1 };
+    let found = search(gait, criterion, speed, &settings, &|_| {});
+    GaitResult::new(gait, criterion, speed, &found, settings.seed, || 0.0)
+}
+
+fn named(name: &str) -> &'static dyn Gait {
+    GAITS.iter().copied().find(|g| g.description().gait == name).unwrap()
+}
+
+/// Costs that an independent collocation solver found for this robot at 0.6 m/s (energy in N, torque
+/// in N²·m·s): a yardstick for what is found here, from geometry alone.
+const YARDSTICK: [(&str, Criterion, f64); 6] = [
+    ("trot", Criterion::Energy, 15.619),
+    ("trot", Criterion::Torque, 34.330),
+    ("amble", Criterion::Energy, 25.490),
+    ("amble", Criterion::Torque, 107.764),
+    ("curvet", Criterion::Energy, 50.148),
+    ("curvet", Criterion::Torque, 334.727),
+];
+
+#[test]
+fn every_gait_and_criterion_has_an_optimum_with_a_receipt() {
+    for (name, criterion, known) in YARDSTICK {
+        let result = optimize(named(name), criterion, 0.6, 4);
+        assert_eq!(result.status, Status::Optimal, "{name} {criterion:?}: {}", result.message);
+        let cost = result.cost.unwrap();
+        assert!(cost <= 1.002 * known, "{name} {criterion:?}: {cost} against {known}");
+        // An optimum far below would be a hole in the constraints rather than a better gait.
+        assert!(cost >= 0.95 * known, "{name} {criterion:?}: {cost} against {known}");
+    }
+}
+
+#[test]
+fn the_receipt_agrees_with_the_optimizer_that_shares_no_code_with_it() {
+    for gait in GAITS {
+        let found = search(*gait, Criterion::Torque, 0.5, &Settings { starts: 1, seed: 1 }, &|_| {});
+        let local = &found.optima[0].local;
+        let receipt = verify(gait.description(), &local.motion, 0.5, 2001).unwrap();
+        let name = gait.description().gait;
+        assert!((receipt.costs.torque / local.costs.torque - 1.0).abs() < 1e-7, "{name}: {receipt:?}");
+        assert!((receipt.costs.energy / local.costs.energy - 1.0).abs() < 1e-4, "{name}: {receipt:?}");
+        assert!(receipt.max_violation < VIOLATION && receipt.cycle_error < 1e-7, "{name}: {receipt:?}");
+        assert!((receipt.speed - 0.5).abs() < 1e-7);
+    }
+}
+
+#[test]
+fn a_spoilt_motion_gets_no_receipt() {
+    let gait = named("trot");
+    let found = search(gait, Criterion::Energy, 0.6, &Settings { starts: 1, seed: 1 }, &|_| {});
+    let good = found.optima[0].local.motion.clone();
+    let spoil = |change: &dyn Fn(&mut Motion)| {
+        let mut motion = good.clone();
+        change(&mut motion);
+        verify(gait.description(), &motion, 0.6, 501).unwrap()
+    };
+    assert!(spoil(&|m| m.half_steps[0].betad_final += 1e-3).cycle_error > 1e-4);
+    assert!(spoil(&|m| m.half_steps[0].q_interior[0][0] += 1e-3).cycle_error > 1e-6);
+    assert!(spoil(&|m| m.half_steps[0].q_final[0] += 1e-2).max_violation > 100.0 * VIOLATION);
+}
+
+#[test]
+fn forces_and_torques_move_the_robot_as_newton_says() {
+    // Over a half step, impulse of the reaction and weight = change of momentum; checked by finite
+    // differences of the platform's path, which no dynamics enters.
+    let gait = named("curvet");
+    let found = search(gait, Criterion::Torque, 0.6, &Settings { starts: 1, seed: 1 }, &|_| {});
+    let motion = &found.optima[0].local.motion;
+    let samples = sample(gait.description(), motion, 401).unwrap();
+    let d = gait.description();
+    let centre = |s: &piaffe::verify::Sample| {
+        let mut x: Vec<f64> = vec![s.platform[0], s.platform[1]];
+        x.extend(&s.q);
+        let mut out = [0.0; 4];
+        gait.centre_of_mass(&x, &vec![0.0; x.len()], &mut out);
+        [out[0], out[1]]
+    };
+    for half_step in [1, 2] {
+        let part: Vec<_> = samples.iter().filter(|s| s.half_step == half_step).collect();
+        let h = part[1].t - part[0].t;
+        for w in part.windows(3).step_by(40) {
+            let [a, b, c] = [centre(w[0]), centre(w[1]), centre(w[2])];
+            for axis in 0..2 {
+                let acceleration = (a[axis] - 2.0 * b[axis] + c[axis]) / (h * h);
+                let gravity = if axis == 1 { d.gravity } else { 0.0 };
+                let force = d.total_mass() * (acceleration + gravity);
+                assert!(
+                    (force - w[1].force[axis]).abs() < 1e-2 * d.total_mass() * d.gravity,
+                    "{force} {:?}",
+                    w[1].force
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn an_impossible_speed_is_infeasible_with_named_conflicts() {
+    for gait in GAITS {
+        let result = optimize(*gait, Criterion::Energy, 5.0, 3);
+        let name = gait.description().gait;
+        assert_eq!(result.status, Status::Infeasible, "{name}: {}", result.message);
+        assert!(result.conflicts.iter().any(|c| c.constraint == "mean speed"), "{name}: {:?}", result.conflicts);
+        assert!(result.cost.is_none() && result.receipt.is_none() && result.variables.is_empty());
+    }
+}
+
+#[test]
+fn the_result_does_not_depend_on_the_number_of_threads() {
+    let gait = named("amble");
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| optimize(gait, Criterion::Torque, 0.7, 4))
+    };
+    assert_eq!(serde_json::to_string(&run(1)).unwrap(), serde_json::to_string(&run(3)).unwrap());
+}
