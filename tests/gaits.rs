@@ -48,7 +48,7 @@ fn the_receipt_agrees_with_the_optimizer_that_shares_no_code_with_it() {
         let receipt = verify(gait.description(), &local.motion, 0.5, 2001).unwrap();
         let name = gait.description().gait;
         assert!((receipt.costs.torque / local.costs.torque - 1.0).abs() < 1e-7, "{name}: {receipt:?}");
-        assert!((receipt.costs.energy / local.costs.energy - 1.0).abs() < 1e-4, "{name}: {receipt:?}");
+        assert!((receipt.costs.energy / local.costs.energy - 1.0).abs() < 1e-3, "{name}: {receipt:?}");
         assert!(receipt.max_violation < VIOLATION && receipt.cycle_error < 1e-7, "{name}: {receipt:?}");
         assert!((receipt.speed - 0.5).abs() < 1e-7);
     }

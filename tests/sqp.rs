@@ -107,6 +107,25 @@ fn from_anywhere() {
     }
     for_each_problem!(check);
     println!("{open} of {runs} runs without an answer, {evaluations} evaluations");
+    assert!(open <= 15, "{open} of {runs}");
+}
+
+/// The shape of the gait problems: screening and the active-set method end where Clarabel on its own does.
+#[test]
+fn a_sampled_trajectory() {
+    use trajectory::{Trajectory, cold};
+    let solve = |cheap_directions, subproblems| {
+        let mut problem = Trajectory::new(trajectory::SAMPLES);
+        problem.cheap_directions = cheap_directions;
+        problem.solve(&Options { subproblems, ..Options::default() }, &cold())
+    };
+    let solution = solve(true, Subproblems::ActiveSet);
+    assert_eq!(solution.status, Status::Optimal);
+    assert_eq!(solution.interior_solves, 0);
+    for other in [solve(false, Subproblems::ActiveSet), solve(true, Subproblems::InteriorPoint)] {
+        assert_eq!(other.status, Status::Optimal);
+        assert!((other.objective - solution.objective).abs() < 1e-7);
+    }
 }
 
 /// Timings: `cargo test --release --test sqp bench -- --ignored --nocapture`.

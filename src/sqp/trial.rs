@@ -18,7 +18,7 @@ use super::scaled::Point;
 const CORRECTIONS: usize = 2;
 /// Radius after a refused step, relative to the step; and its growth after a step that filled it.
 const SHRINK: f64 = 0.3;
-const GROW: f64 = 4.0;
+const GROW: f64 = 3.0;
 
 impl<P: Problem> Run<'_, '_, P> {
     /// Tries `d`, then its corrections. With `true` the trial point is acceptable and linearized; with `false` the iterate
