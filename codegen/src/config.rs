@@ -59,7 +59,9 @@ impl Config {
     }
 
     fn try_compile(&self) -> Result<(), String> {
-        let root = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").ok_or("CARGO_MANIFEST_DIR is not set: run this from a build script")?);
+        let root = PathBuf::from(
+            env::var_os("CARGO_MANIFEST_DIR").ok_or("CARGO_MANIFEST_DIR is not set: run this from a build script")?,
+        );
         let out = PathBuf::from(env::var_os("OUT_DIR").ok_or("OUT_DIR is not set: run this from a build script")?);
         for path in self.gaits.iter().chain([&self.robot]) {
             println!("cargo::rerun-if-changed={}", path.display());
@@ -81,25 +83,38 @@ impl Config {
 /// The rendered diagnostics, if the specification has mistakes.
 pub fn generate(robot: &SpecFile, gaits: &[SpecFile], runtime: &str) -> Result<Vec<Generated>, String> {
     let robot_file = spec::parse_robot(&robot.path, &robot.text).map_err(|e| render(&e))?;
-    let mut files = Vec::new();
-    let mut names = Vec::new();
     let mut mistakes = Vec::new();
+    let mut parsed = Vec::new();
     for file in gaits {
         match spec::parse_gait(&file.path, &file.text, &robot_file) {
-            Ok(gait) => {
-                let mechanism = Mechanism::new(&robot_file.robot, &gait);
-                let source = emit::gait_source(&mechanism, runtime, &origin(&[robot, file]))?;
-                files.push((format!("{}.rs", emit::module_name(&gait.name)), source));
-                names.push(gait.name);
-            }
+            Ok(gait) => parsed.push((file, gait)),
             Err(e) => mistakes.extend(e),
         }
     }
     if !mistakes.is_empty() {
         return Err(render(&mistakes));
     }
-    let sources: Vec<&SpecFile> = std::iter::once(robot).chain(gaits).collect();
-    files.push(("gaits.rs".into(), emit::registry_source(&names, runtime, &origin(&sources))));
+    // Gaits do not know of each other: one thread each, joined in order.
+    let robot_spec = &robot_file.robot;
+    let sources: Vec<Result<String, String>> = std::thread::scope(|scope| {
+        let running: Vec<_> = parsed
+            .iter()
+            .map(|(file, gait)| {
+                scope.spawn(move || {
+                    emit::gait_source(&Mechanism::new(robot_spec, gait), runtime, &origin(&[robot, file]))
+                })
+            })
+            .collect();
+        let stopped = |_| Err("the generator stopped: a defect of piaffe-codegen".to_string());
+        running.into_iter().map(|thread| thread.join().unwrap_or_else(stopped)).collect()
+    });
+    let mut files = Vec::new();
+    for ((_, gait), source) in parsed.iter().zip(sources) {
+        files.push((format!("{}.rs", emit::module_name(&gait.name)), source?));
+    }
+    let names: Vec<String> = parsed.into_iter().map(|(_, gait)| gait.name).collect();
+    let all: Vec<&SpecFile> = std::iter::once(robot).chain(gaits).collect();
+    files.push(("gaits.rs".into(), emit::registry_source(&names, runtime, &origin(&all))));
     Ok(files)
 }
 
@@ -120,7 +135,8 @@ fn origin(files: &[&SpecFile]) -> String {
 }
 
 fn read(root: &Path, path: &Path) -> Result<SpecFile, String> {
-    let text = fs::read_to_string(root.join(path)).map_err(|e| format!("cannot read the specification {}: {e}", path.display()))?;
+    let text = fs::read_to_string(root.join(path))
+        .map_err(|e| format!("cannot read the specification {}: {e}", path.display()))?;
     Ok(SpecFile { path: path.display().to_string(), text })
 }
 

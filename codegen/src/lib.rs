@@ -8,12 +8,12 @@
 
 #![forbid(unsafe_code)]
 
+mod config;
 pub mod dynamics;
+pub mod emit;
 pub mod expr;
 pub mod mechanism;
 pub mod program;
 pub mod spec;
-mod config;
-pub mod emit;
 
 pub use config::{Config, Generated, SpecFile, generate};

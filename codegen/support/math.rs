@@ -1,5 +1,6 @@
 /// Sine and cosine of `x` (rad): one pinned, branch-free implementation, so that results are the
-/// same bits on every machine. Error below 1 ulp for |x| ≤ 1e5; NaN for non-finite arguments.
+/// same bits on every machine. Largest error found by `tests/math.rs`: 0.78 ulp for |x| ≤ 1e5, 0.51
+/// within a few numbers of a multiple of π/2. NaN for non-finite arguments.
 ///
 /// The argument is reduced by multiples of π/2 given in three parts (Cody and Waite), then the
 /// Taylor series about zero are summed on [−π/4, π/4], where their remainders are below 1e-17.
@@ -30,13 +31,13 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
             + z * (-1.0 / 5_040.0
                 + z * (1.0 / 362_880.0
                     + z * (-1.0 / 39_916_800.0
-                        + z * (1.0 / 6_227_020_800.0 + z * (-1.0 / 1_307_674_368_000.0 + z * (1.0 / 355_687_428_096_000.0)))))));
+                        + z * (1.0 / 6_227_020_800.0
+                            + z * (-1.0 / 1_307_674_368_000.0 + z * (1.0 / 355_687_428_096_000.0)))))));
     let c = 1.0 / 24.0
         + z * (-1.0 / 720.0
             + z * (1.0 / 40_320.0
                 + z * (-1.0 / 3_628_800.0
-                    + z * (1.0 / 479_001_600.0
-                        + z * (-1.0 / 87_178_291_200.0 + z * (1.0 / 20_922_789_888_000.0))))));
+                    + z * (1.0 / 479_001_600.0 + z * (-1.0 / 87_178_291_200.0 + z * (1.0 / 20_922_789_888_000.0))))));
     let half = 0.5 * z;
     let sin = r + (r * z * s + low * (1.0 - half));
     let one = 1.0 - half;

@@ -18,9 +18,7 @@ fn read(path: &Path) -> String {
 }
 
 fn file_name(path: &Path) -> &str {
-    path.file_name()
-        .and_then(|name| name.to_str())
-        .expect("names of cases are plain text")
+    path.file_name().and_then(|name| name.to_str()).expect("names of cases are plain text")
 }
 
 fn cases() -> Vec<PathBuf> {
@@ -35,10 +33,7 @@ fn cases() -> Vec<PathBuf> {
 
 /// The robot that a gait names, or the shipped one.
 fn robot_of(gait: &str) -> RobotFile {
-    let named = gait
-        .lines()
-        .next()
-        .and_then(|line| line.strip_prefix("# robot: "));
+    let named = gait.lines().next().and_then(|line| line.strip_prefix("# robot: "));
     let path = match named {
         Some(name) => folder().join(name.trim()),
         None => Path::new(env!("CARGO_MANIFEST_DIR")).join("../model-spec/robot.toml"),
@@ -48,11 +43,7 @@ fn robot_of(gait: &str) -> RobotFile {
 }
 
 fn rendered(found: &[Diagnostic]) -> String {
-    found
-        .iter()
-        .map(|d| d.render() + "\n")
-        .collect::<Vec<_>>()
-        .join("\n")
+    found.iter().map(|d| d.render() + "\n").collect::<Vec<_>>().join("\n")
 }
 
 /// The mistakes in one case.
@@ -79,24 +70,13 @@ fn messages() {
             changed.push(format!("==== {}\n{messages}", file_name(&case)));
         }
     }
-    assert!(
-        changed.is_empty(),
-        "{}\nBLESS=1 accepts these messages",
-        changed.join("\n")
-    );
+    assert!(changed.is_empty(), "{}\nBLESS=1 accepts these messages", changed.join("\n"));
 }
 
 #[test]
 fn every_code_has_a_case() {
-    let seen: BTreeSet<Code> = cases()
-        .iter()
-        .flat_map(|case| found_in(case))
-        .map(|d| d.code)
-        .collect();
-    let unseen: Vec<_> = Code::ALL
-        .iter()
-        .filter(|code| !seen.contains(code))
-        .collect();
+    let seen: BTreeSet<Code> = cases().iter().flat_map(|case| found_in(case)).map(|d| d.code).collect();
+    let unseen: Vec<_> = Code::ALL.iter().filter(|code| !seen.contains(code)).collect();
     assert!(unseen.is_empty(), "{unseen:?}");
 }
 
@@ -105,18 +85,9 @@ fn every_message_says_where_and_what_instead() {
     for case in cases() {
         for d in found_in(&case) {
             let name = file_name(&case);
-            assert!(
-                !d.title.is_empty() && !d.primary.text.is_empty() && !d.help.is_empty(),
-                "{name}: {d:?}"
-            );
-            assert!(
-                d.primary.span.end <= d.primary.source.text().len(),
-                "{name}: {d:?}"
-            );
-            assert!(
-                d.render().contains(&format!("error[{}]", d.code)),
-                "{name}: {d}"
-            );
+            assert!(!d.title.is_empty() && !d.primary.text.is_empty() && !d.help.is_empty(), "{name}: {d:?}");
+            assert!(d.primary.span.end <= d.primary.source.text().len(), "{name}: {d:?}");
+            assert!(d.render().contains(&format!("error[{}]", d.code)), "{name}: {d}");
         }
     }
 }

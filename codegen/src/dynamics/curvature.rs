@@ -67,8 +67,7 @@ fn instant(model: &mut Model, leg: usize) -> Kernel {
     for (weight, term) in others.iter().zip(terms) {
         sum += &(&Poly::from(*weight) * term);
     }
-    let gradient: Vec<Poly> =
-        q.iter().chain(&qd).chain(&qdd).map(|s| model.ring.derivative(&sum, *s)).collect();
+    let gradient: Vec<Poly> = q.iter().chain(&qd).chain(&qdd).map(|s| model.ring.derivative(&sum, *s)).collect();
     let (by_q, rest) = gradient.split_at(q.len());
     let by_qd = &rest[..q.len()];
     let (qq, q_qd, q_qdd) = (model.jacobian(by_q, &q), model.jacobian(by_q, &qd), model.jacobian(by_q, &qdd));

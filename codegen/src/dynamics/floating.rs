@@ -73,10 +73,13 @@ pub fn kernels(model: &mut Model) -> Vec<Kernel> {
         );
         let momentum = angular_momentum(model, leg);
         kernels.push(
-            Kernel::new(name("angular_momentum"), "Angular momentum σ of the whole robot about the foot's position, absolute velocities, kg·m²/s.")
-                .input("x", x.clone())
-                .input("xd", xd.clone())
-                .scalar("sigma", momentum, "σ"),
+            Kernel::new(
+                name("angular_momentum"),
+                "Angular momentum σ of the whole robot about the foot's position, absolute velocities, kg·m²/s.",
+            )
+            .input("x", x.clone())
+            .input("xd", xd.clone())
+            .scalar("sigma", momentum, "σ"),
         );
     }
     kernels
@@ -119,25 +122,12 @@ fn angular_momentum(model: &mut Model, leg: usize) -> Poly {
 
 /// Component along the world `axis` of the spin momentum of body `b`.
 fn spin_momentum(model: &Model, b: usize, axis: usize) -> Poly {
-    let mechanism = &model.mechanism;
     let spin = &model.kinematics.bodies[b].spin;
-    let angular = scaled(spin, &mechanism.bodies[b].inertia);
-    if mechanism.rotation == Rotation::None && b == 0 {
-        return Poly::zero();
+    let angular = scaled(spin, &model.mechanism.bodies[b].inertia);
+    // The axis in the body's axes is the partial spin of the platform's rotation about it. In a
+    // level gait all bodies turn about it.
+    match model.coordinates.q.get(model.mechanism.joints.len()) {
+        Some(theta) => dot(&[0, 1, 2].map(|i| model.ring.derivative(&spin[i], theta[1])), &angular),
+        None => angular[axis].clone(),
     }
-    // The world axis in the body's axes is ∂ω/∂(rate of any coordinate that turns it about the axis).
-    let rate = match mechanism.rotation {
-        Rotation::None => {
-            let mut ancestor = b;
-            while let Some(parent) = mechanism.bodies[ancestor].parent.filter(|p| *p != 0) {
-                ancestor = parent;
-            }
-            mechanism.bodies[ancestor].coordinate
-        }
-        _ => Some(mechanism.joints.len()),
-    };
-    let Some(rate) = rate.map(|k| model.coordinates.q[k][1]) else { return Poly::zero() };
-    let direction = [0, 1, 2].map(|i| model.ring.derivative(&spin[i], rate));
-    debug_assert!(axis < 3);
-    dot(&direction, &angular)
 }

@@ -89,11 +89,14 @@ pub fn kernels(model: &mut Model, leg: usize) -> Vec<Kernel> {
     let (map, xd) = with_platform(model, leg, &solution);
     let before = com_velocity(model, &platform);
     let impulse = impulse(model, leg, &before, &map);
-    let general = Kernel::new(format!("impact{}", leg + 1), "Passive impact on this foot, the other one free (eq. 12): velocities after, and the impulse.")
-        .input("q", model.q(0))
-        .input("xd", model.x(1))
-        .vector("xd_plus", xd, "Ẋ⁺")
-        .vector("impulse", impulse, "impulse on this foot, N·s");
+    let general = Kernel::new(
+        format!("impact{}", leg + 1),
+        "Passive impact on this foot, the other one free (eq. 12): velocities after, and the impulse.",
+    )
+    .input("q", model.q(0))
+    .input("xd", model.x(1))
+    .vector("xd_plus", xd, "Ẋ⁺")
+    .vector("impulse", impulse, "impulse on this foot, N·s");
     vec![general, touchdown(model, leg)]
 }
 
@@ -234,6 +237,10 @@ pub fn both_feet(model: &mut Model) -> Kernel {
         .vector("xd_plus", xd, "Ẋ⁺")
         .vector("impulse1", impulse_other, "impulse on foot 1, N·s")
         .vector("impulse2", impulse_landing, "impulse on foot 2, N·s")
-        .vector("pivots", schur_factors.pivots, "pivots of the feet's mutual compliance: one that is tiny beside `scale` means a singular case")
+        .vector(
+            "pivots",
+            schur_factors.pivots,
+            "pivots of the feet's mutual compliance: one that is tiny beside `scale` means a singular case",
+        )
         .vector("scale", scale, "the compliance's diagonal")
 }

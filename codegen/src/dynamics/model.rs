@@ -1,6 +1,6 @@
 //! A mechanism with its symbols and kinematics: what all kernels are derived from.
 
-use super::kinematics::{Coordinates, Kinematics, Vec3, dot, subtract};
+use super::kinematics::{Coordinates, Kinematics, Vec3, add, cross, dot, subtract};
 use crate::expr::{Poly, Ring, Var};
 use crate::mechanism::Mechanism;
 use std::collections::BTreeMap;
@@ -94,15 +94,42 @@ impl Model {
             let spin = self.kinematics.bodies[b].spin.clone();
             let inertia = self.mechanism.bodies[b].inertia;
             let angular = scaled(&spin, &inertia);
-            let moment = super::kinematics::add(&self.rate(&angular), &super::kinematics::cross(&spin, &angular));
+            let moment = add(&self.rate(&angular), &cross(&spin, &angular));
             self.project(coordinates, b, centre, &acceleration, &moment, &mut forces);
         }
         self.add_rotors(coordinates, 2, &mut forces);
         forces
     }
 
+    /// Angular momentum σ about `origin` of a robot whose platform stays level, and dσ/dt less the
+    /// moment of gravity. In a turn of the whole robot a body moves along z × r and spins about z;
+    /// rotors do not turn in their motors, so they do not count.
+    pub fn level_turn(&mut self, origin: Origin) -> (Poly, Poly) {
+        let (mut sigma, mut balance) = (Poly::zero(), Poly::zero());
+        for (b, centre) in self.centres(origin).iter().enumerate() {
+            let velocity = self.rate(centre);
+            let mut acceleration = self.rate(&velocity);
+            acceleration[1] += &Poly::constant(self.mechanism.gravity);
+            let (mass, inertia) = (self.mechanism.bodies[b].mass, self.mechanism.bodies[b].inertia[2]);
+            let spin = self.kinematics.bodies[b].spin[2].scaled(inertia);
+            sigma += &cross(centre, &velocity)[2].scaled(mass);
+            sigma += &spin;
+            balance += &cross(centre, &acceleration)[2].scaled(mass);
+            balance += &self.ring.time_derivative(&spin);
+        }
+        (sigma, balance)
+    }
+
     /// Adds `m ∂r/∂X·linear + ∂ω/∂Ẋ·angular` of body `b`.
-    fn project(&self, coordinates: &[[Var; 3]], b: usize, centre: &Vec3, linear: &Vec3, angular: &Vec3, sums: &mut [Poly]) {
+    fn project(
+        &self,
+        coordinates: &[[Var; 3]],
+        b: usize,
+        centre: &Vec3,
+        linear: &Vec3,
+        angular: &Vec3,
+        sums: &mut [Poly],
+    ) {
         let mass = self.mechanism.bodies[b].mass;
         let spin = &self.kinematics.bodies[b].spin;
         for (sum, [x, xd, _]) in sums.iter_mut().zip(coordinates) {

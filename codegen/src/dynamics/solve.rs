@@ -1,5 +1,7 @@
 //! Solution of small symmetric positive definite systems, unrolled: A = L D Lᵀ.
 
+#![allow(clippy::needless_range_loop, reason = "indices as in the formulas")]
+
 use crate::expr::{Poly, Ring};
 
 /// The factors of a symmetric matrix, as bound atoms.

@@ -81,10 +81,13 @@ pub fn kernels(model: &mut Model, leg: usize) -> Vec<Kernel> {
     let moment_q = gradient(&stance.gravity_moment, &prescribed);
     let name = |what: &str| format!("{what}{}", leg + 1);
     vec![
-        Kernel::new(name("early"), "What eq. 8 and 9 and their gradients need of (Q, Q̇) alone; the late kernels take it.")
-            .input("actuated", prescribed)
-            .input("actuated_d", rates)
-            .vector("early", early.values.clone(), "early values"),
+        Kernel::new(
+            name("early"),
+            "What eq. 8 and 9 and their gradients need of (Q, Q̇) alone; the late kernels take it.",
+        )
+        .input("actuated", prescribed)
+        .input("actuated_d", rates)
+        .vector("early", early.values.clone(), "early values"),
         Kernel::new(name("late"), "f1, f2 (eq. 8) and σ̇ (eq. 9) with their derivatives in β.")
             .input("early", early.symbols.clone())
             .scalar_input("beta", beta)

@@ -30,7 +30,7 @@ pub struct Stance {
     pub gravity_moment: Poly,
     /// Lever arm c (eq. 9).
     pub c: Poly,
-    /// Balance along the free direction: zero in every motion (eq. 10).
+    /// Moment balance of the whole robot about the stance foot: zero in every motion (eq. 10).
     pub balance: Poly,
 }
 
@@ -40,16 +40,11 @@ impl Stance {
         let q = model.coordinates.q.clone();
         let (qd, qdd) = (model.q(1), model.q(2));
         let forces = model.generalized_forces(origin, &q);
-        let momenta = model.momenta(origin, &q);
-        let free = model.mechanism.free_direction();
-        let sum = |list: &[Poly]| {
-            let mut total = Poly::zero();
-            for k in &free {
-                total += &list[*k];
-            }
-            total
+        // The whole robot turning about the foot: the platform's rotation where it has one.
+        let (sigma, balance) = match model.mechanism.rotation {
+            Rotation::None => model.level_turn(origin),
+            _ => (model.momenta(origin, &q[q.len() - 1..]).remove(0), forces[q.len() - 1].clone()),
         };
-        let (balance, sigma) = (sum(&forces), sum(&momenta));
         let inertia = model.jacobian(&forces, &qdd);
         let bias = forces.iter().map(|f| model.without(f, &qdd)).collect();
         let beta_rate = model.unactuated(1);
@@ -94,7 +89,7 @@ pub fn kernels(model: &mut Model, leg: usize) -> Vec<Kernel> {
             .scalar("sigma", stance.sigma.clone(), "σ, kg·m²/s")
             .scalar("c", stance.c.clone(), "horizontal distance from S to the mass centre, m")
             .scalar("sigmadot", stance.gravity_moment.clone(), "moment of gravity about S, N·m"),
-        Kernel::new(name("reduced"), "Reduced model Aq q̈ + Hq = Dq Γ of eq. 6 (Dq is constant: see the mechanism's torque map).")
+        Kernel::new(name("reduced"), "Reduced model of eq. 6: the rows of Aq q̈ + Hq are the torques of the joints and, where the platform turns, 0.")
             .input("q", q.clone())
             .input("qd", qd.clone())
             .matrix("a", stance.inertia.clone(), "Aq")
@@ -110,12 +105,15 @@ pub fn kernels(model: &mut Model, leg: usize) -> Vec<Kernel> {
     let swing_rate = model.rate(&swing);
     let swing_velocity = model.components(&swing_rate);
     kernels.push(
-        Kernel::new(name("placement"), "Platform's mass centre and swing foot from the stance foot, m, with Jacobians in q.")
-            .input("q", q.clone())
-            .vector("p", position.clone(), "platform's mass centre")
-            .vector("swing", swing_position.clone(), "swing foot")
-            .matrix("p_q", model.jacobian(&position, &q), "∂p/∂q")
-            .matrix("swing_q", model.jacobian(&swing_position, &q), "∂swing/∂q"),
+        Kernel::new(
+            name("placement"),
+            "Platform's mass centre and swing foot from the stance foot, m, with Jacobians in q.",
+        )
+        .input("q", q.clone())
+        .vector("p", position.clone(), "platform's mass centre")
+        .vector("swing", swing_position.clone(), "swing foot")
+        .matrix("p_q", model.jacobian(&position, &q), "∂p/∂q")
+        .matrix("swing_q", model.jacobian(&swing_position, &q), "∂swing/∂q"),
     );
     let by: Vec<Var> = q.iter().chain(&qd).copied().collect();
     kernels.push(
@@ -144,30 +142,67 @@ fn momentum(model: &mut Model, stance: &Stance, leg: usize) -> Kernel {
 fn forward(model: &mut Model, stance: &Stance, leg: usize, platform: &[Poly]) -> Kernel {
     let independent = model.mechanism.independent_torques();
     let torques: Vec<Var> = independent.iter().map(|j| model.ring.symbol(format!("gamma{}", j + 1))).collect();
-    let map = model.mechanism.torque_map();
-    let right: Vec<Poly> = map
-        .iter()
-        .zip(&stance.bias)
-        .map(|(row, bias)| {
-            let mut sum = -bias;
-            for (share, torque) in row.iter().zip(&torques) {
-                sum += &Poly::from(*torque).scaled(*share);
-            }
-            sum
-        })
-        .collect();
+    let mut right: Vec<Poly> = stance.bias.iter().map(|bias| -bias).collect();
+    for (joint, torque) in independent.iter().zip(&torques) {
+        right[*joint] += &(*torque).into();
+    }
+    let beta = model.mechanism.unactuated;
+    let level = model.mechanism.rotation == Rotation::None;
+    let cancel = level && torques_cancel(model, stance);
+    if cancel {
+        for (_, torque) in independent.iter().zip(&torques).filter(|(j, _)| model.mechanism.hangs_on_platform(**j)) {
+            right[beta] = &right[beta] - &(*torque).into();
+        }
+    }
     let factors = Factors::new(&mut model.ring, &stance.inertia);
-    let solution = factors.solve(&mut model.ring, &right);
+    let mut solution = factors.solve(&mut model.ring, &right);
+    if level && !cancel {
+        solution = keep_level(model, stance, &factors, &solution);
+    }
     let map: BTreeMap<Var, Poly> = model.q(2).into_iter().zip(solution.iter().cloned()).collect();
     let mut xdd: Vec<Poly> = platform.iter().map(|a| model.ring.substitute(a, &map)).collect();
     xdd.extend(solution);
     let reaction = stance.reaction.iter().map(|f| model.ring.substitute(f, &map)).collect();
-    Kernel::new(format!("forward{}", leg + 1), "Forward dynamics in single support: Ẍ and the reaction F from the independent torques Γ (eq. 5 with eq. 4).")
-        .input("q", model.q(0))
-        .input("qd", model.q(1))
-        .input("gamma", torques)
-        .vector("xdd", xdd, "Ẍ")
-        .vector("f", reaction, "reaction at the stance foot, N")
+    Kernel::new(
+        format!("forward{}", leg + 1),
+        "Forward dynamics in single support: Ẍ and the reaction F from the independent torques Γ (eq. 5 with eq. 4).",
+    )
+    .input("q", model.q(0))
+    .input("qd", model.q(1))
+    .input("gamma", torques)
+    .vector("xdd", xdd, "Ẍ")
+    .vector("f", reaction, "reaction at the stance foot, N")
+}
+
+/// Whether a level platform means that the torques on it cancel (eq. 1): so it does where both hips lie
+/// at its mass centre and rotors weigh nothing. Then the balance is the sum of those joints' rows.
+fn torques_cancel(model: &Model, stance: &Stance) -> bool {
+    let mut rest = stance.balance.clone();
+    for (joint, force) in stance.forces.iter().enumerate() {
+        if model.mechanism.hangs_on_platform(joint) {
+            rest = &rest - force;
+        }
+    }
+    rest.is_zero()
+}
+
+/// q̈ with the torque at β that keeps the platform level: the one with which the balance holds.
+fn keep_level(model: &mut Model, stance: &Stance, factors: &Factors, torque_free: &[Poly]) -> Vec<Poly> {
+    let mut unit = vec![Poly::zero(); torque_free.len()];
+    unit[model.mechanism.unactuated] = Poly::constant(1.0);
+    let response = factors.solve(&mut model.ring, &unit);
+    let accelerations = model.q(2);
+    let row = model.jacobian(std::slice::from_ref(&stance.balance), &accelerations).remove(0);
+    let mut rest = model.without(&stance.balance, &accelerations);
+    let mut share = Poly::zero();
+    for ((b, y), w) in row.iter().zip(torque_free).zip(&response) {
+        rest += &(b * y);
+        share += &(b * w);
+    }
+    let (rest, share) = (model.ring.bind(rest), model.ring.bind(share));
+    let over_share = model.ring.reciprocal(share);
+    let torque = model.ring.bind(-&(&rest * &over_share));
+    torque_free.iter().zip(&response).map(|(y, w)| model.ring.bind(y + &(w * &torque))).collect()
 }
 
 /// β̈ as a bound atom (eq. 10): the balance is linear in it.
@@ -189,13 +224,16 @@ fn inverse(model: &mut Model, stance: &Stance, leg: usize, platform: &[Poly]) ->
     let joints = model.mechanism.joints.len();
     let torques = stance.forces[..joints].iter().map(|f| model.ring.substitute(f, &map)).collect();
     let reaction = stance.reaction.iter().map(|f| model.ring.substitute(f, &map)).collect();
-    Kernel::new(format!("inverse{}", leg + 1), "Inverse dynamics in single support: full Ẍ (β̈ by eq. 10), the torque of every joint and the reaction, from Q̈.")
-        .input("q", model.q(0))
-        .input("qd", model.q(1))
-        .input("actuated_dd", model.prescribed(2))
-        .vector("xdd", xdd, "Ẍ")
-        .vector("gamma", torques, "torque of every joint, N·m")
-        .vector("f", reaction, "reaction at the stance foot, N")
+    Kernel::new(
+        format!("inverse{}", leg + 1),
+        "Inverse dynamics in single support: full Ẍ (β̈ by eq. 10), the torque of every joint and the reaction, from Q̈.",
+    )
+    .input("q", model.q(0))
+    .input("qd", model.q(1))
+    .input("actuated_dd", model.prescribed(2))
+    .vector("xdd", xdd, "Ẍ")
+    .vector("gamma", torques, "torque of every joint, N·m")
+    .vector("f", reaction, "reaction at the stance foot, N")
 }
 
 /// What the optimizer evaluates at every instant: outputs and Jacobian, β̈ treated as independent.

@@ -180,7 +180,9 @@ impl Function<'_> {
             let kept: Vec<Ident> = block
                 .iter()
                 .flat_map(|(ids, _)| ids)
-                .filter(|id| last_use.get(id).is_some_and(|user| user.is_none_or(|u| position.get(&u).is_none_or(|p| *p >= end))))
+                .filter(|id| {
+                    last_use.get(id).is_some_and(|user| user.is_none_or(|u| position.get(&u).is_none_or(|p| *p >= end)))
+                })
                 .map(|id| self.node_name(*id))
                 .collect();
             let lines = block.iter().map(|(_, s)| s);
@@ -199,7 +201,9 @@ impl Function<'_> {
     fn last_uses(&self, order: &[Id]) -> BTreeMap<Id, Option<Id>> {
         let mut last: BTreeMap<Id, Option<Id>> = BTreeMap::new();
         for &user in order {
-            if let Node::Sin(s) | Node::Cos(s) | Node::Value(s) | Node::Reciprocal(s) = self.program.nodes[user as usize] {
+            if let Node::Sin(s) | Node::Cos(s) | Node::Value(s) | Node::Reciprocal(s) =
+                self.program.nodes[user as usize]
+            {
                 for id in self.program.sums[s].iter().flat_map(|t| &t.factors) {
                     last.insert(*id, Some(user));
                 }
@@ -217,7 +221,8 @@ impl Function<'_> {
         // Positive terms first spares a negation.
         let first = sum.iter().position(|t| t.coefficient > 0.0).unwrap_or(0);
         let mut tokens = TokenStream::new();
-        let order = sum.get(first).into_iter().chain(sum.iter().enumerate().filter(|(i, _)| *i != first).map(|(_, t)| t));
+        let order =
+            sum.get(first).into_iter().chain(sum.iter().enumerate().filter(|(i, _)| *i != first).map(|(_, t)| t));
         for (k, term) in order.enumerate() {
             let product = self.product(term);
             let negative = term.coefficient < 0.0;

@@ -50,7 +50,8 @@ pub fn gait_source(mechanism: &Mechanism, runtime: &str, origin: &str) -> Result
 
 /// Source of the module that holds all gaits of a build.
 pub fn registry_source(gaits: &[String], runtime: &str, origin: &str) -> String {
-    let mut source = format!("// {origin}\n/// Elementary functions with pinned results.\npub mod math {{\n{MATH}\n}}\n");
+    let mut source =
+        format!("// {origin}\n/// Elementary functions with pinned results.\npub mod math {{\n{MATH}\n}}\n");
     for gait in gaits {
         let module = module_name(gait);
         source += &format!(

@@ -28,7 +28,8 @@ pub fn type_name(name: &str) -> String {
 
 /// A name as a Rust identifier: lower case, `_` for everything else.
 pub fn module_name(name: &str) -> String {
-    let mut result: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' }).collect();
+    let mut result: String =
+        name.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' }).collect();
     if result.starts_with(|c: char| c.is_ascii_digit()) || result.is_empty() {
         result.insert(0, '_');
     }

@@ -285,22 +285,39 @@ impl Ring {
 
     /// Numeric value, for tests: `values` gives the symbols.
     pub fn evaluate(&self, p: &Poly, values: &BTreeMap<Var, f64>) -> f64 {
-        p.terms().map(|(m, c)| m.iter().fold(c, |product, v| product * self.atom_value(*v, values))).sum()
+        self.value(p, &mut values.clone())
     }
 
-    fn atom_value(&self, atom: Var, values: &BTreeMap<Var, f64>) -> f64 {
-        let angle = |a: usize| -> f64 { self.angles[a].iter().map(|v| self.atom_value(*v, values)).sum() };
-        if atom.is_sin() {
-            angle(atom.index()).sin()
+    /// Numeric values of many expressions that share bound atoms.
+    pub fn evaluate_all<'p>(&self, list: impl IntoIterator<Item = &'p Poly>, values: &BTreeMap<Var, f64>) -> Vec<f64> {
+        let mut known = values.clone();
+        list.into_iter().map(|p| self.value(p, &mut known)).collect()
+    }
+
+    fn value(&self, p: &Poly, known: &mut BTreeMap<Var, f64>) -> f64 {
+        p.terms().map(|(m, c)| m.iter().fold(c, |product, v| product * self.atom_value(*v, known))).sum()
+    }
+
+    fn atom_value(&self, atom: Var, known: &mut BTreeMap<Var, f64>) -> f64 {
+        if let Some(value) = known.get(&atom) {
+            return *value;
+        }
+        let angle = |a: usize, known: &mut BTreeMap<Var, f64>| -> f64 {
+            self.angles[a].iter().map(|v| self.atom_value(*v, known)).sum()
+        };
+        let value = if atom.is_sin() {
+            angle(atom.index(), known).sin()
         } else if atom.is_cos() {
-            angle(atom.index()).cos()
+            angle(atom.index(), known).cos()
         } else {
             match &self.plain[atom.index()] {
-                Kind::Bound(definition) => self.evaluate(definition, values),
-                Kind::Reciprocal(definition) => 1.0 / self.evaluate(definition, values),
-                _ => values.get(&atom).copied().unwrap_or(f64::NAN),
+                Kind::Bound(definition) => self.value(definition, known),
+                Kind::Reciprocal(definition) => 1.0 / self.value(definition, known),
+                _ => f64::NAN,
             }
-        }
+        };
+        known.insert(atom, value);
+        value
     }
 }
 
@@ -319,7 +336,11 @@ mod tests {
         let p = &(&s * &(&rate * &rate)) * &r;
         let at = |x: f64, v: f64| {
             let values = BTreeMap::from([(a, x), (b, 0.3), (ad, v), (bd, 0.7)]);
-            (ring.evaluate(&p, &values), ring.evaluate(&ring.derivative(&p, a), &values), ring.evaluate(&ring.derivative(&p, ad), &values))
+            (
+                ring.evaluate(&p, &values),
+                ring.evaluate(&ring.derivative(&p, a), &values),
+                ring.evaluate(&ring.derivative(&p, ad), &values),
+            )
         };
         let h = 1e-6;
         let (_, by_angle, by_rate) = at(0.4, 1.1);
@@ -353,6 +374,8 @@ mod tests {
         let values = BTreeMap::from([(a, 0.2), (b, 0.5), (ad, 1.5), (bd, -0.4), (add, 2.0), (bdd, 3.0)]);
         let (angle, rate, acceleration) = (0.7f64, 1.1, 5.0);
         assert!((ring.evaluate(&v, &values) - angle.cos() * rate).abs() < 1e-14);
-        assert!((ring.evaluate(&acc, &values) - (angle.cos() * acceleration - angle.sin() * rate * rate)).abs() < 1e-14);
+        assert!(
+            (ring.evaluate(&acc, &values) - (angle.cos() * acceleration - angle.sin() * rate * rate)).abs() < 1e-14
+        );
     }
 }

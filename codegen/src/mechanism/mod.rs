@@ -155,15 +155,9 @@ impl Mechanism {
         names
     }
 
-    /// Joints that hang on the platform, one per leg.
-    pub fn root_joints(&self) -> impl Iterator<Item = usize> + '_ {
-        self.bodies.iter().filter(|b| b.parent == Some(0)).filter_map(|b| b.coordinate)
-    }
-
-    /// The direction in q along which no torque does work: the whole robot turning about the
-    /// stance foot. Its balance is the angular momentum theorem (eq. 8, 9).
-    pub fn free_direction(&self) -> Vec<usize> {
-        if self.rotation == Rotation::None { self.root_joints().collect() } else { vec![self.joints.len()] }
+    /// Whether the joint connects a leg to the platform.
+    pub fn hangs_on_platform(&self, joint: usize) -> bool {
+        self.bodies.iter().any(|b| b.parent == Some(0) && b.coordinate == Some(joint))
     }
 
     /// Indices in q of the prescribed coordinates Q: all but β.
@@ -171,32 +165,9 @@ impl Mechanism {
         (0..self.orientations()).filter(|i| *i != self.unactuated).collect()
     }
 
-    /// `D_G` (eq. 5) restricted to q: how the independent torques act; shape orientations × prescribed.
-    ///
-    /// Where the platform does not rotate, the torques on it must balance (eq. 1): the torque of
-    /// the unactuated joint is minus the sum of the other torques on the platform.
-    pub fn torque_map(&self) -> Vec<Vec<f64>> {
-        let independent: Vec<usize> = self.independent_torques();
-        let roots: Vec<usize> = self.root_joints().collect();
-        (0..self.orientations())
-            .map(|row| {
-                independent
-                    .iter()
-                    .map(|&torque| {
-                        if row == torque {
-                            1.0
-                        } else if self.rotation == Rotation::None && row == self.unactuated && roots.contains(&torque) {
-                            -1.0
-                        } else {
-                            0.0
-                        }
-                    })
-                    .collect()
-            })
-            .collect()
-    }
-
     /// The joints whose torques are independent: as many as there are prescribed coordinates.
+    ///
+    /// Where the platform does not rotate, the torque of the unactuated joint keeps it level (eq. 1).
     pub fn independent_torques(&self) -> Vec<usize> {
         (0..self.joints.len()).filter(|j| *j != self.unactuated).collect()
     }

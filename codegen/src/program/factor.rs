@@ -5,302 +5,292 @@
 //! product of two nodes; or a scaled node, `k·a`. The divisor that saves most operations over all
 //! sums becomes a node of its own, and the search goes on until none saves any.
 
-use super::{Id, Node, Program, Sum, Term};
+use super::divisor::{Divisor, Factors, Item, Offer, hash_of, rounded, without};
+use super::{Id, Node, Program, Term};
 use smallvec::SmallVec;
-use std::collections::{BTreeSet, BinaryHeap, HashMap};
-use std::hash::{BuildHasherDefault, DefaultHasher};
+use std::cmp::Reverse;
+use std::collections::{BinaryHeap, HashMap};
+use std::hash::{BuildHasherDefault, Hasher};
 
-type Factors = SmallVec<[Id; 6]>;
-/// A hasher without a random seed: same input, same program.
-type Map<K, V> = HashMap<K, V, BuildHasherDefault<DefaultHasher>>;
+/// Keys are hashes already. No random seed: same input, same program.
+#[derive(Default)]
+struct Identity(u64);
 
-/// Sums longer than this only pair terms that share a factor.
-const LONG: usize = 80;
+impl Hasher for Identity {
+    fn finish(&self) -> u64 {
+        self.0
+    }
 
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-enum Divisor {
-    /// `first + ratio · second`.
-    Pair { first: Factors, second: Factors, ratio: Number },
-    /// Product of two nodes.
-    Product(Id, Id),
-    /// A node times a positive number.
-    Scaled(Id, Number),
-}
+    fn write(&mut self, _: &[u8]) {
+        unreachable!("keys are u64");
+    }
 
-/// A coefficient as an ordered key: its bits, less the last few, which are rounding.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-struct Number(u64);
-
-impl Number {
-    const NOISE: u32 = 8;
-
-    fn new(value: f64) -> Number {
-        Number((value.to_bits() + (1 << (Number::NOISE - 1))) >> Number::NOISE)
+    fn write_u64(&mut self, key: u64) {
+        self.0 = key;
     }
 }
 
-#[derive(Default)]
 struct Candidate {
+    cost: [i32; 2],
+    /// What its occurrences save in all, for either choice of the coefficient that is 1.
+    saved: [i32; 2],
+    /// What occurrences that overlap, so that not all can be replaced, were found to count too much.
+    overcount: i32,
+    /// The gain of its highest entry in the queue.
+    queued: i32,
+    /// Sums in which it occurs or has occurred.
+    sums: SmallVec<[u32; 4]>,
+    /// Known once it saves something.
+    divisor: Option<Box<Divisor>>,
+}
+
+impl Candidate {
+    fn unit(&self) -> usize {
+        usize::from(self.saved[1] - self.cost[1] > self.saved[0] - self.cost[0])
+    }
+
     /// Operations saved if all occurrences are replaced, less what the divisor costs.
-    gain: i64,
-    sums: BTreeSet<usize>,
+    fn gain(&self) -> i32 {
+        let unit = self.unit();
+        self.saved[unit] - self.cost[unit] - self.overcount
+    }
+}
+
+/// All divisors that the sums offer.
+#[derive(Default)]
+struct Market {
+    ids: HashMap<u64, u32, BuildHasherDefault<Identity>>,
+    candidates: Vec<Candidate>,
+    /// By gain, then the oldest first. Entries may be out of date: too high, never too low.
+    queue: BinaryHeap<(i32, Reverse<u32>)>,
+    /// Whether the queue is kept up to date.
+    open: bool,
 }
 
 struct Search<'a> {
-    program: &'a mut Program,
-    candidates: Map<Divisor, Candidate>,
-    /// What each sum contributes, to take it back when the sum changes.
-    contributions: Vec<Vec<(Divisor, i64)>>,
-    queue: BinaryHeap<(i64, std::cmp::Reverse<Divisor>)>,
+    nodes: &'a mut Vec<Node>,
+    sums: Vec<Vec<Item>>,
+    market: Market,
+}
+
+/// An occurrence in a sum: which terms go, what takes their place.
+struct Rewrite {
+    gone: SmallVec<[usize; 2]>,
+    item: Item,
 }
 
 /// Rewrites the sums of `program` over shared new nodes.
 pub fn factor(program: &mut Program) {
-    let count = program.sums.len();
-    let mut search = Search { program, candidates: Map::default(), contributions: vec![Vec::new(); count], queue: BinaryHeap::new() };
-    for sum in 0..count {
-        search.enter(sum);
+    let sums = program.sums.iter().map(|s| s.iter().map(|t| Item::new(t.coefficient, t.factors.clone())).collect());
+    let mut search = Search { sums: sums.collect(), nodes: &mut program.nodes, market: Market::default() };
+    for sum in 0..search.sums.len() {
+        let items = std::mem::take(&mut search.sums[sum]);
+        items.into_iter().for_each(|item| search.insert(sum, item));
     }
-    while let Some((gain, std::cmp::Reverse(divisor))) = search.queue.pop() {
-        if search.candidates.get(&divisor).is_some_and(|c| c.gain == gain) {
-            search.extract(&divisor);
-        }
+    search.market.open();
+    while let Some(best) = search.market.best() {
+        search.extract(best);
     }
+    let sort = |items: Vec<Item>| {
+        let mut sum: Vec<Term> =
+            items.into_iter().map(|i| Term { coefficient: i.coefficient, factors: i.factors }).collect();
+        sum.sort_by(|a, b| a.factors.cmp(&b.factors));
+        sum
+    };
+    program.sums = search.sums.into_iter().map(sort).collect();
     merge_equal_sums(program);
 }
 
-impl Divisor {
-    fn cost(&self) -> i64 {
-        match self {
-            Divisor::Pair { first, second, ratio } => {
-                let unit = *ratio == Number::new(1.0) || *ratio == Number::new(-1.0);
-                let of = |f: &Factors| f.len().saturating_sub(1) as i64;
-                let scale = if unit || second.is_empty() { 0 } else { 1 };
-                of(first) + of(second) + scale + 1
-            }
-            Divisor::Product(..) | Divisor::Scaled(..) => 1,
+impl Market {
+    /// Adds an occurrence in `sum`.
+    fn add(&mut self, sum: usize, offer: &Offer) {
+        let id = *self.ids.entry(offer.key).or_insert_with(|| {
+            let (cost, sums) = (offer.cost, SmallVec::new());
+            self.candidates.push(Candidate { cost, saved: [0; 2], overcount: 0, queued: 0, sums, divisor: None });
+            self.candidates.len() as u32 - 1
+        });
+        let candidate = &mut self.candidates[id as usize];
+        candidate.saved[0] += offer.saved[0];
+        candidate.saved[1] += offer.saved[1];
+        if candidate.sums.last() != Some(&(sum as u32)) {
+            candidate.sums.push(sum as u32);
         }
+        if candidate.gain() > 0 {
+            candidate.divisor.get_or_insert_with(|| Box::new(offer.divisor()));
+            if self.open {
+                self.queue(id);
+            }
+        }
+    }
+
+    /// Takes an occurrence back.
+    fn take(&mut self, offer: &Offer) {
+        if let Some(id) = self.ids.get(&offer.key) {
+            let saved = &mut self.candidates[*id as usize].saved;
+            saved[0] -= offer.saved[0];
+            saved[1] -= offer.saved[1];
+        }
+    }
+
+    fn open(&mut self) {
+        self.open = true;
+        (0..self.candidates.len() as u32).for_each(|id| self.queue(id));
+    }
+
+    fn queue(&mut self, id: u32) {
+        let candidate = &mut self.candidates[id as usize];
+        let gain = candidate.gain();
+        if gain > candidate.queued {
+            candidate.queued = gain;
+            self.queue.push((gain, Reverse(id)));
+        }
+    }
+
+    /// The divisor that saves most.
+    fn best(&mut self) -> Option<u32> {
+        while let Some((gain, Reverse(id))) = self.queue.pop() {
+            let candidate = &mut self.candidates[id as usize];
+            if gain == candidate.queued {
+                candidate.queued = 0;
+                if candidate.gain() == gain {
+                    return Some(id);
+                }
+                self.queue(id);
+            }
+        }
+        None
     }
 }
 
 impl Search<'_> {
-    /// Counts what `sum` offers.
-    fn enter(&mut self, sum: usize) {
-        let offers = offers(&self.program.sums[sum]);
-        let mut touched: Vec<Divisor> = Vec::new();
-        for (divisor, saved) in &offers {
-            let candidate = self.candidates.entry(divisor.clone()).or_insert_with(|| Candidate { gain: -divisor.cost(), sums: BTreeSet::new() });
-            candidate.gain += saved;
-            candidate.sums.insert(sum);
-            touched.push(divisor.clone());
+    /// Adds a term to a sum, with all that it offers.
+    fn insert(&mut self, sum: usize, item: Item) {
+        item.offers(|offer| self.market.add(sum, &offer));
+        for other in &self.sums[sum] {
+            self.market.add(sum, &other.offer_with(&item));
         }
-        touched.dedup();
-        for divisor in touched {
-            let gain = self.candidates[&divisor].gain;
-            if gain > 0 {
-                self.queue.push((gain, std::cmp::Reverse(divisor)));
-            }
-        }
-        self.contributions[sum] = offers;
+        self.sums[sum].push(item);
     }
 
-    /// Takes back what `sum` offered.
-    fn leave(&mut self, sum: usize) {
-        for (divisor, saved) in std::mem::take(&mut self.contributions[sum]) {
-            if let Some(candidate) = self.candidates.get_mut(&divisor) {
-                candidate.gain -= saved;
-                candidate.sums.remove(&sum);
-                if candidate.sums.is_empty() {
-                    self.candidates.remove(&divisor);
-                } else if candidate.gain > 0 {
-                    let gain = candidate.gain;
-                    self.queue.push((gain, std::cmp::Reverse(divisor)));
-                }
-            }
+    /// Takes a term out of a sum, with all that it offered.
+    fn remove(&mut self, sum: usize, at: usize) {
+        let item = self.sums[sum].swap_remove(at);
+        item.offers(|offer| self.market.take(&offer));
+        for other in &self.sums[sum] {
+            self.market.take(&other.offer_with(&item));
         }
     }
 
-    fn extract(&mut self, divisor: &Divisor) {
-        let sums: Vec<usize> = self.candidates[divisor].sums.iter().copied().collect();
-        let node = self.program.nodes.len() as Id;
-        let mut definition: Option<Sum> = None;
-        let mut saved = 0;
-        let mut rewritten: Vec<(usize, Sum)> = Vec::new();
-        for sum in sums {
-            let mut terms = self.program.sums[sum].clone();
-            let before = cost(&terms);
-            let found = replace(&mut terms, divisor, node);
-            if let Some(found) = found {
-                saved += before - cost(&terms);
-                definition.get_or_insert(found);
-                rewritten.push((sum, terms));
-            }
+    fn extract(&mut self, id: u32) {
+        let candidate = &mut self.market.candidates[id as usize];
+        let (unit, expected) = (candidate.unit(), candidate.gain());
+        let Some(divisor) = candidate.divisor.clone() else { return };
+        candidate.sums.sort_unstable();
+        candidate.sums.dedup();
+        let node = self.nodes.len() as Id;
+        let found: Vec<(usize, Vec<Rewrite>)> = candidate
+            .sums
+            .iter()
+            .map(|s| (*s as usize, occurrences(&self.sums[*s as usize], &divisor, unit, node)))
+            .filter(|(_, list)| !list.is_empty())
+            .collect();
+        let saved: i32 = found.iter().flat_map(|(s, list)| list.iter().map(|r| r.saved(&self.sums[*s]))).sum();
+        // Occurrences can overlap: then the gain was counted too high.
+        let gain = saved - candidate.cost[unit];
+        if gain < expected {
+            candidate.overcount += expected - gain;
+            return self.market.queue(id);
         }
-        // Occurrences can overlap within a sum: then the gain was counted too high.
-        let Some(definition) = definition.filter(|d| saved - cost(d) > 0) else {
-            if let Some(candidate) = self.candidates.get_mut(divisor) {
-                candidate.gain = i64::MIN / 2;
-            }
-            return;
-        };
-        self.program.nodes.push(Node::Value(self.program.sums.len()));
-        self.program.sums.push(definition);
-        self.contributions.push(Vec::new());
-        for (sum, terms) in rewritten {
-            self.leave(sum);
-            self.program.sums[sum] = terms;
-            self.enter(sum);
+        candidate.sums = found.iter().map(|(s, _)| *s as u32).collect();
+        for (sum, list) in found {
+            let mut gone: Vec<usize> = list.iter().flat_map(|r| r.gone.iter().copied()).collect();
+            gone.sort_unstable();
+            gone.into_iter().rev().for_each(|at| self.remove(sum, at));
+            list.into_iter().for_each(|r| self.insert(sum, r.item));
         }
-        let new = self.program.sums.len() - 1;
-        self.enter(new);
+        self.nodes.push(Node::Value(self.sums.len()));
+        self.sums.push(Vec::new());
+        let new = self.sums.len() - 1;
+        for term in divisor.definition(unit) {
+            self.insert(new, Item::new(term.coefficient, term.factors));
+        }
     }
 }
 
-fn cost(sum: &[Term]) -> i64 {
-    sum.iter().map(|t| t.cost() as i64).sum::<i64>() + sum.len() as i64 - 1
+impl Rewrite {
+    fn saved(&self, sum: &[Item]) -> i32 {
+        let before: i32 = self.gone.iter().map(|i| sum[*i].cost()).sum();
+        before + self.gone.len() as i32 - 1 - self.item.cost()
+    }
 }
 
-/// All divisors of a sum with what each occurrence saves.
-fn offers(sum: &Sum) -> Vec<(Divisor, i64)> {
-    let mut offers = Vec::new();
-    for term in sum {
-        let f = &term.factors;
-        for (i, a) in f.iter().enumerate() {
-            if i > 0 && f[i - 1] == *a && i > 1 && f[i - 2] == *a {
-                continue;
-            }
-            for (j, b) in f.iter().enumerate().skip(i + 1) {
-                if j > i + 1 && f[j - 1] == *b {
-                    continue;
-                }
-                if i > 0 && f[i - 1] == *a && *b != *a {
-                    continue;
-                }
-                offers.push((Divisor::Product(*a, *b), 1));
-            }
-            if term.coefficient.abs() != 1.0 && (i == 0 || f[i - 1] != *a) {
-                offers.push((Divisor::Scaled(*a, Number::new(term.coefficient.abs())), 1));
-            }
-        }
-    }
-    for (i, a) in sum.iter().enumerate() {
-        for b in &sum[i + 1..] {
-            let (common, first, second) = split(&a.factors, &b.factors);
-            if sum.len() > LONG && common.is_empty() {
-                continue;
-            }
-            let divisor = Divisor::Pair { first, second, ratio: Number::new(b.coefficient / a.coefficient) };
-            let mut factors = common;
-            factors.push(0);
-            let together = Term { coefficient: a.coefficient, factors };
-            let saved = a.cost() as i64 + b.cost() as i64 + 1 - together.cost() as i64;
-            offers.push((divisor, saved));
-        }
-    }
-    offers.sort();
-    offers
-}
-
-/// Common factors and what is left of each list.
-fn split(a: &Factors, b: &Factors) -> (Factors, Factors, Factors) {
-    let (mut common, mut only_a, mut only_b) = (Factors::new(), Factors::new(), Factors::new());
-    let (mut i, mut j) = (0, 0);
-    while i < a.len() && j < b.len() {
-        match a[i].cmp(&b[j]) {
-            std::cmp::Ordering::Equal => {
-                common.push(a[i]);
-                i += 1;
-                j += 1;
-            }
-            std::cmp::Ordering::Less => {
-                only_a.push(a[i]);
-                i += 1;
-            }
-            std::cmp::Ordering::Greater => {
-                only_b.push(b[j]);
-                j += 1;
-            }
-        }
-    }
-    only_a.extend_from_slice(&a[i..]);
-    only_b.extend_from_slice(&b[j..]);
-    (common, only_a, only_b)
-}
-
-/// Replaces all occurrences of `divisor` by `node`; gives the divisor's definition if there was one.
-fn replace(sum: &mut Sum, divisor: &Divisor, node: Id) -> Option<Sum> {
-    let mut definition = None;
+/// Occurrences of `divisor` that do not overlap.
+fn occurrences(sum: &[Item], divisor: &Divisor, unit: usize, node: Id) -> Vec<Rewrite> {
+    let mut found = Vec::new();
     match divisor {
         Divisor::Product(a, b) => {
-            for term in sum.iter_mut() {
-                while let Some(rest) = without(&term.factors, &[*a, *b]) {
-                    term.factors = rest;
-                    term.factors.push(node);
-                    definition.get_or_insert_with(|| vec![Term { coefficient: 1.0, factors: Factors::from_slice(&[*a, *b]) }]);
+            for (i, item) in sum.iter().enumerate() {
+                let mut factors = item.factors.clone();
+                let mut times = 0;
+                while let Some(rest) = without(&factors, &[*a, *b]) {
+                    factors = rest;
+                    times += 1;
+                }
+                if times > 0 {
+                    factors.extend(std::iter::repeat_n(node, times));
+                    found
+                        .push(Rewrite { gone: SmallVec::from_slice(&[i]), item: Item::new(item.coefficient, factors) });
                 }
             }
         }
-        Divisor::Scaled(a, number) => {
-            for term in sum.iter_mut() {
-                if term.coefficient.abs() == 1.0 || Number::new(term.coefficient.abs()) != *number {
+        Divisor::Scaled(a, size) => {
+            for (i, item) in sum.iter().enumerate() {
+                let coefficient = item.coefficient.abs();
+                if coefficient == 1.0 || rounded(coefficient) != rounded(*size) {
                     continue;
                 }
-                if let Some(rest) = without(&term.factors, &[*a]) {
-                    let coefficient = term.coefficient.abs();
-                    definition.get_or_insert_with(|| vec![Term { coefficient, factors: Factors::from_slice(&[*a]) }]);
-                    term.factors = rest;
-                    term.factors.push(node);
-                    term.coefficient = term.coefficient.signum();
+                if let Some(mut rest) = without(&item.factors, &[*a]) {
+                    rest.push(node);
+                    let item = Item::new(item.coefficient.signum(), rest);
+                    found.push(Rewrite { gone: SmallVec::from_slice(&[i]), item });
                 }
             }
         }
         Divisor::Pair { first, second, ratio } => {
-            let mut i = 0;
-            while i < sum.len() {
-                let partner = (i + 1..sum.len()).find(|&j| {
-                    let (_, a, b) = split(&sum[i].factors, &sum[j].factors);
-                    a == *first && b == *second && Number::new(sum[j].coefficient / sum[i].coefficient) == *ratio
-                });
-                if let Some(j) = partner {
-                    let other = sum.remove(j);
-                    let (mut common, ..) = split(&sum[i].factors, &other.factors);
-                    let ratio = other.coefficient / sum[i].coefficient;
-                    definition.get_or_insert_with(|| {
-                        vec![Term { coefficient: 1.0, factors: first.clone() }, Term { coefficient: ratio, factors: second.clone() }]
-                    });
-                    common.push(node);
-                    sum[i].factors = common;
+            let change = hash_of(second).wrapping_sub(hash_of(first));
+            let mut used = vec![false; sum.len()];
+            for (i, item) in sum.iter().enumerate() {
+                let Some(common) = without(&item.factors, first).filter(|_| !used[i]) else { continue };
+                let partner = item.hash.wrapping_add(change);
+                let fits = |j: usize, other: &Item| {
+                    other.hash == partner
+                        && !used[j]
+                        && j != i
+                        && rounded(other.coefficient / item.coefficient) == rounded(*ratio)
+                        && without(&other.factors, second).as_ref() == Some(&common)
+                };
+                if let Some(j) = sum.iter().enumerate().position(|(j, other)| fits(j, other)) {
+                    (used[i], used[j]) = (true, true);
+                    let mut factors = common;
+                    factors.push(node);
+                    let coefficient = if unit == 0 { item.coefficient } else { sum[j].coefficient };
+                    found.push(Rewrite { gone: SmallVec::from_slice(&[i, j]), item: Item::new(coefficient, factors) });
                 }
-                i += 1;
             }
         }
     }
-    for term in sum.iter_mut() {
-        term.factors.sort_unstable();
-    }
-    sum.sort_by(|a, b| a.factors.cmp(&b.factors));
-    definition
-}
-
-/// `factors` without those listed, if it has them all.
-fn without(factors: &Factors, remove: &[Id]) -> Option<Factors> {
-    let mut rest = factors.clone();
-    for r in remove {
-        let at = rest.iter().position(|f| f == r)?;
-        rest.remove(at);
-    }
-    Some(rest)
+    found
 }
 
 /// Sums that became equal are computed once.
 fn merge_equal_sums(program: &mut Program) {
-    let mut first: Vec<usize> = (0..program.sums.len()).collect();
-    for s in 0..program.sums.len() {
-        if let Some(same) = (0..s).find(|t| program.sums[*t] == program.sums[s]) {
-            first[s] = same;
-        }
+    let mut known: HashMap<Vec<(u64, &Factors)>, usize> = HashMap::new();
+    let mut first = Vec::with_capacity(program.sums.len());
+    for (s, sum) in program.sums.iter().enumerate() {
+        let key = sum.iter().map(|t| (t.coefficient.to_bits(), &t.factors)).collect();
+        first.push(*known.entry(key).or_insert(s));
     }
-    for node in &mut program.nodes {
+    for node in program.nodes.iter_mut() {
         if let Node::Sin(s) | Node::Cos(s) | Node::Value(s) | Node::Reciprocal(s) = node {
             *s = first[*s];
         }

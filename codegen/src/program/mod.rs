@@ -1,5 +1,6 @@
 //! From expressions to straight-line programs: factoring, common subexpressions, scheduling, counts.
 
+mod divisor;
 mod factor;
 mod lower;
 

@@ -7,18 +7,9 @@ use super::view::View;
 
 pub(super) fn platform(name: &str, view: &View<'_>, sink: &mut Sink) -> Option<Platform> {
     let mass = view.number("mass", sink);
-    let com = if view.has("com") {
-        view.vector("com", sink).map(|at| at.value)
-    } else {
-        Some([0.0; 3])
-    };
+    let com = if view.has("com") { view.vector("com", sink).map(|at| at.value) } else { Some([0.0; 3]) };
     let inertia = inertia(view, ["roll", "yaw", "pitch"], sink);
-    Some(Platform {
-        name: name.to_string(),
-        mass: mass?.value,
-        com: com?,
-        inertia: inertia?,
-    })
+    Some(Platform { name: name.to_string(), mass: mass?.value, com: com?, inertia: inertia? })
 }
 
 pub(super) fn link(name: &str, view: &View<'_>, sink: &mut Sink) -> Option<Link> {
@@ -26,13 +17,7 @@ pub(super) fn link(name: &str, view: &View<'_>, sink: &mut Sink) -> Option<Link>
     let length = view.number("length", sink);
     let com = view.com("com", sink);
     let inertia = inertia(view, ["lateral", "axial", "swing"], sink);
-    Some(Link {
-        name: name.to_string(),
-        mass: mass?.value,
-        length: length?.value,
-        com: com?,
-        inertia: inertia?,
-    })
+    Some(Link { name: name.to_string(), mass: mass?.value, length: length?.value, com: com?, inertia: inertia? })
 }
 
 /// Moments about x, y, z under their names in this table. No moment of a rigid body exceeds the sum of the
@@ -49,10 +34,7 @@ fn inertia(view: &View<'_>, keys: [&str; 3], sink: &mut Sink) -> Option<[f64; 3]
         // Some slack for data in decimal digits: a flat plate has exactly the sum.
         if at.value > others * (1.0 + 1e-9) {
             let [a, b] = [keys[(i + 1) % 3], keys[(i + 2) % 3]];
-            let title = format!(
-                "`{}`: an inertia that no rigid body can have",
-                view.join("inertia")
-            );
+            let title = format!("`{}`: an inertia that no rigid body can have", view.join("inertia"));
             let label = format!("more than {a} + {b} = {}", short(others));
             let help = format!(
                 "no moment exceeds the sum of the other two: write {} = {} or less, or raise the others",
@@ -86,13 +68,7 @@ pub(super) fn actuator(name: &str, view: &View<'_>, sink: &mut Sink) -> Option<A
             "a loaded motor turns slower: write unloaded = {}, at_max_torque = {}",
             loaded.value, unloaded.value
         );
-        sink.report(
-            Code::SpeedRisesWithTorque,
-            title,
-            &loaded.span,
-            "faster than unloaded",
-            help,
-        );
+        sink.report(Code::SpeedRisesWithTorque, title, &loaded.span, "faster than unloaded", help);
         sink.beside(sink.label(&unloaded.span, "unloaded"));
         None
     });

@@ -23,10 +23,7 @@ pub(super) struct Parts {
 }
 
 /// Checks how the parts hang together and puts the legs together. `None` if anything is wrong.
-pub(super) fn assemble(
-    parts: Parts,
-    sink: &mut Sink,
-) -> Option<(Platform, Vec<Leg>, Vec<LegPlaces>)> {
+pub(super) fn assemble(parts: Parts, sink: &mut Sink) -> Option<(Platform, Vec<Leg>, Vec<LegPlaces>)> {
     parts.check_mounts(sink);
     if !parts.whole || !parts.check_references(sink) {
         return None; // what follows would only repeat it
@@ -35,16 +32,9 @@ pub(super) fn assemble(
         return None;
     }
     let platform = parts.platform(sink)?;
-    let starts: Vec<_> = parts
-        .legs
-        .iter()
-        .map(|leg| parts.first_joint(leg, platform, sink))
-        .collect();
+    let starts: Vec<_> = parts.legs.iter().map(|leg| parts.first_joint(leg, platform, sink)).collect();
     let starts: Option<Vec<usize>> = starts.into_iter().collect(); // after all legs had their say
-    let chains: Vec<Vec<usize>> = starts?
-        .into_iter()
-        .map(|joint| parts.chain(joint))
-        .collect();
+    let chains: Vec<Vec<usize>> = starts?.into_iter().map(|joint| parts.chain(joint)).collect();
     parts.check_all_used(&chains, sink);
     parts.build(platform, &chains)
 }
@@ -58,11 +48,7 @@ impl Parts {
     fn check_references(&self, sink: &mut Sink) -> bool {
         let links: Vec<&str> = self.link_names().collect();
         let joints: Vec<&str> = self.joints.iter().map(|j| j.name.value.as_str()).collect();
-        let actuators: Vec<&str> = self
-            .actuators
-            .iter()
-            .map(|(n, _)| n.value.as_str())
-            .collect();
+        let actuators: Vec<&str> = self.actuators.iter().map(|(n, _)| n.value.as_str()).collect();
         let mut good = true;
         for joint in &self.joints {
             for link in [&joint.parent, &joint.child] {
@@ -79,10 +65,7 @@ impl Parts {
     /// At least two legs, each at its own place.
     fn check_mounts(&self, sink: &mut Sink) {
         if self.whole && self.legs.len() < 2 {
-            let title = format!(
-                "a robot needs at least two legs, this one has {}",
-                self.legs.len()
-            );
+            let title = format!("a robot needs at least two legs, this one has {}", self.legs.len());
             let help = "add another leg, for example hind_left = { mount = [x, y, z] }";
             sink.report(Code::TooFewLegs, title, &self.legs_at, "too few legs", help);
         }
@@ -91,24 +74,14 @@ impl Parts {
             let same = self.legs[..i].iter().find_map(|other| {
                 let theirs = other.mount.as_ref()?;
                 let close = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-9;
-                theirs
-                    .value
-                    .iter()
-                    .zip(&mount.value)
-                    .all(close)
-                    .then_some((other, theirs))
+                theirs.value.iter().zip(&mount.value).all(close).then_some((other, theirs))
             });
             if let Some((other, theirs)) = same {
-                let title = format!(
-                    "legs `{}` and `{}` are mounted at the same place",
-                    other.name.value, leg.name.value
-                );
+                let title =
+                    format!("legs `{}` and `{}` are mounted at the same place", other.name.value, leg.name.value);
                 let help = "give each leg its own mount = [x, y, z]: z is negative on the left, positive on the right";
                 sink.report(Code::SameMount, title, &mount.span, "the same place", help);
-                sink.beside(sink.label(
-                    &theirs.span,
-                    format!("`{}` is here already", other.name.value),
-                ));
+                sink.beside(sink.label(&theirs.span, format!("`{}` is here already", other.name.value)));
             }
         }
     }
@@ -118,10 +91,7 @@ impl Parts {
         let platform = &self.links[platform].0.value;
         let candidates = self.joints_below(platform);
         let names = || {
-            let names: Vec<_> = candidates
-                .iter()
-                .map(|&j| format!("\"{}\"", self.joints[j].name.value))
-                .collect();
+            let names: Vec<_> = candidates.iter().map(|&j| format!("\"{}\"", self.joints[j].name.value)).collect();
             names.join(" or ")
         };
         let Some(name) = &leg.first_joint else {
@@ -131,34 +101,17 @@ impl Parts {
             let title = format!("leg `{}` could start with several joints", leg.name.value);
             let label = format!("{} joints hang on `{platform}`", candidates.len());
             let help = format!("add first_joint = {}", names());
-            sink.report(
-                Code::AmbiguousFirstJoint,
-                title,
-                &leg.name.span,
-                label,
-                help,
-            );
+            sink.report(Code::AmbiguousFirstJoint, title, &leg.name.span, label, help);
             return None;
         };
-        let joint = self
-            .joints
-            .iter()
-            .position(|j| j.name.value == name.value)?;
+        let joint = self.joints.iter().position(|j| j.name.value == name.value)?;
         if candidates.contains(&joint) {
             return Some(joint);
         }
-        let title = format!(
-            "leg `{}` starts with joint `{}`, which does not hang on the platform",
-            leg.name.value, name.value
-        );
+        let title =
+            format!("leg `{}` starts with joint `{}`, which does not hang on the platform", leg.name.value, name.value);
         let help = format!("write first_joint = {}", names());
-        sink.report(
-            Code::NotOnPlatform,
-            title,
-            &name.span,
-            "expected a joint of the platform",
-            help,
-        );
+        sink.report(Code::NotOnPlatform, title, &name.span, "expected a joint of the platform", help);
         if let Some(parent) = &self.joints[joint].parent {
             sink.beside(sink.label(&parent.span, format!("`{}` hangs on this link", name.value)));
         }
@@ -171,10 +124,7 @@ impl Parts {
         let mut last = first;
         // The tree has no circles; the bound makes the end evident.
         while chain.len() < self.joints.len() {
-            let below = self.joints[last]
-                .child
-                .as_ref()
-                .map(|c| self.joints_below(&c.value));
+            let below = self.joints[last].child.as_ref().map(|c| self.joints_below(&c.value));
             let Some(&next) = below.as_ref().and_then(|b| b.first()) else {
                 break;
             };
@@ -189,42 +139,22 @@ impl Parts {
         for (i, joint) in self.joints.iter().enumerate() {
             if !chains.iter().any(|chain| chain.contains(&i)) {
                 let title = format!("joint `{}` is not used", joint.name.value);
-                let help = format!(
-                    "let a leg start with it (first_joint = \"{}\"), or remove it",
-                    joint.name.value
-                );
-                sink.report(
-                    Code::Unused,
-                    title,
-                    &joint.name.span,
-                    "part of no leg",
-                    help,
-                );
+                let help = format!("let a leg start with it (first_joint = \"{}\"), or remove it", joint.name.value);
+                sink.report(Code::Unused, title, &joint.name.span, "part of no leg", help);
             }
         }
         for (actuator, _) in &self.actuators {
-            let drives = |j: &RawJoint| {
-                j.actuator
-                    .as_ref()
-                    .is_some_and(|a| a.value == actuator.value)
-            };
+            let drives = |j: &RawJoint| j.actuator.as_ref().is_some_and(|a| a.value == actuator.value);
             if !self.joints.iter().any(drives) {
                 let title = format!("actuator `{}` is not used", actuator.value);
-                let help = format!(
-                    "let a joint have actuator = \"{}\", or remove it",
-                    actuator.value
-                );
+                let help = format!("let a joint have actuator = \"{}\", or remove it", actuator.value);
                 sink.report(Code::Unused, title, &actuator.span, "drives no joint", help);
             }
         }
     }
 
     /// The plain values, if every part could be read.
-    fn build(
-        &self,
-        platform: usize,
-        chains: &[Vec<usize>],
-    ) -> Option<(Platform, Vec<Leg>, Vec<LegPlaces>)> {
+    fn build(&self, platform: usize, chains: &[Vec<usize>]) -> Option<(Platform, Vec<Leg>, Vec<LegPlaces>)> {
         let Some(Body::Platform(platform)) = &self.links.get(platform)?.1 else {
             return None;
         };
@@ -233,18 +163,11 @@ impl Parts {
         for (leg, chain) in self.legs.iter().zip(chains) {
             let mount = leg.mount.as_ref()?;
             let segments: Option<Vec<Segment>> = chain.iter().map(|&j| self.segment(j)).collect();
-            legs.push(Leg {
-                name: leg.name.value.clone(),
-                mount: mount.value,
-                chain: segments?,
-            });
+            legs.push(Leg { name: leg.name.value.clone(), mount: mount.value, chain: segments? });
             places.push(LegPlaces {
                 name: leg.name.span.clone(),
                 mount: mount.span.clone(),
-                axes: chain
-                    .iter()
-                    .map(|&j| self.joints[j].axis.span.clone())
-                    .collect(),
+                axes: chain.iter().map(|&j| self.joints[j].axis.span.clone()).collect(),
             });
         }
         Some((platform.clone(), legs, places))
@@ -253,22 +176,9 @@ impl Parts {
     fn segment(&self, joint: usize) -> Option<Segment> {
         let raw = &self.joints[joint];
         let actuator = raw.actuator.as_ref()?;
-        let actuator = self
-            .actuators
-            .iter()
-            .find(|(name, _)| name.value == actuator.value)?
-            .1
-            .clone()?;
-        let joint = Joint {
-            name: raw.name.value.clone(),
-            axis: raw.axis.value,
-            range: raw.range?,
-            actuator,
-        };
-        Some(Segment {
-            joint,
-            link: self.link(&raw.child.as_ref()?.value)?.clone(),
-        })
+        let actuator = self.actuators.iter().find(|(name, _)| name.value == actuator.value)?.1.clone()?;
+        let joint = Joint { name: raw.name.value.clone(), axis: raw.axis.value, range: raw.range?, actuator };
+        Some(Segment { joint, link: self.link(&raw.child.as_ref()?.value)?.clone() })
     }
 
     fn link(&self, name: &str) -> Option<&Link> {
@@ -288,19 +198,9 @@ fn resolves(name: Option<&At<String>>, what: &str, known: &[&str], sink: &mut Si
     let help = match (nearest(&name.value, known.iter().copied()), known) {
         (Some(near), _) => format!("did you mean \"{near}\"?"),
         (None, []) => format!("describe it: [{what}s.{}]", name.value),
-        (None, _) => format!(
-            "write one of {}, or describe it: [{what}s.{}]",
-            known.join(", "),
-            name.value
-        ),
+        (None, _) => format!("write one of {}, or describe it: [{what}s.{}]", known.join(", "), name.value),
     };
     let title = format!("there is no {what} `{}`", name.value);
-    sink.report(
-        Code::UnknownName,
-        title,
-        &name.span,
-        format!("no such {what}"),
-        help,
-    );
+    sink.report(Code::UnknownName, title, &name.span, format!("no such {what}"), help);
     false
 }

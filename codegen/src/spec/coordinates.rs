@@ -19,13 +19,7 @@ pub(super) fn single(root: &View<'_>, sink: &mut Sink) -> Option<At<String>> {
         Some((length, span)) => {
             let title = format!("a gait has exactly one unactuated coordinate, not {length}");
             let help = "write unactuated = \"platform\", or \"leg1.<joint>\" where the platform does not rotate";
-            sink.report(
-                Code::NotOneUnactuated,
-                title,
-                &span,
-                "expected one name",
-                help,
-            );
+            sink.report(Code::NotOneUnactuated, title, &span, "expected one name", help);
             None
         }
         None => root.text("unactuated", sink),
@@ -44,23 +38,11 @@ pub(super) fn lateral(raw: &RawGait, sink: &mut Sink) -> Option<bool> {
         return Some(lateral);
     }
     let (title, help) = if lateral {
-        (
-            "a platform that rolls moves in x, y and z",
-            "write moves = [\"x\", \"y\", \"z\"], or rotates = \"pitch\"",
-        )
+        ("a platform that rolls moves in x, y and z", "write moves = [\"x\", \"y\", \"z\"], or rotates = \"pitch\"")
     } else {
-        (
-            "a platform that does not roll moves in x and y",
-            "write moves = [\"x\", \"y\"], or rotates = \"roll\"",
-        )
+        ("a platform that does not roll moves in x and y", "write moves = [\"x\", \"y\"], or rotates = \"roll\"")
     };
-    sink.report(
-        Code::WrongMoves,
-        title,
-        &moves.span,
-        "these directions do not go with the rotation",
-        help,
-    );
+    sink.report(Code::WrongMoves, title, &moves.span, "these directions do not go with the rotation", help);
     sink.beside(sink.label(&rotation.span, "the rotation"));
     None
 }
@@ -84,13 +66,7 @@ pub(super) fn unactuated(
         if rotates == Some(false) {
             let title = "no unactuated coordinate: the platform does not rotate";
             let help = "write unactuated = \"leg1.<joint>\" with the joint that hangs on the platform, or let the platform rotate";
-            sink.report(
-                Code::NotOneUnactuated,
-                title,
-                &name.span,
-                "the platform has no such coordinate",
-                help,
-            );
+            sink.report(Code::NotOneUnactuated, title, &name.span, "the platform has no such coordinate", help);
             sink.beside(sink.label(&rotation?.span, "it stays level"));
             return None;
         }
@@ -100,38 +76,20 @@ pub(super) fn unactuated(
         let title = format!("there is no coordinate `{}`", name.value);
         let help = match nearest(&name.value, ["platform"]) {
             Some(near) => format!("did you mean \"{near}\"?"),
-            None => "write \"platform\", or \"leg1.<joint>\" or \"leg2.<joint>\" where the platform does not rotate".into(),
+            None => {
+                "write \"platform\", or \"leg1.<joint>\" or \"leg2.<joint>\" where the platform does not rotate".into()
+            }
         };
-        sink.report(
-            Code::UnknownName,
-            title,
-            &name.span,
-            "expected platform, leg1.<joint> or leg2.<joint>",
-            help,
-        );
+        sink.report(Code::UnknownName, title, &name.span, "expected platform, leg1.<joint> or leg2.<joint>", help);
         return None;
     };
     let joint = resolve_joint(name, leg, joint, legs?, robot, sink)?;
     if rotates? {
-        let title = format!(
-            "two unactuated coordinates: the platform's {word} and `{}`",
-            name.value
-        );
-        let help = format!(
-            "write unactuated = \"platform\", or rotates = \"none\" to make `{}` the only one",
-            name.value
-        );
-        sink.report(
-            Code::NotOneUnactuated,
-            title,
-            &name.span,
-            "the second one",
-            help,
-        );
-        sink.beside(sink.label(
-            &rotation?.span,
-            "no actuator turns the platform: the first one",
-        ));
+        let title = format!("two unactuated coordinates: the platform's {word} and `{}`", name.value);
+        let help =
+            format!("write unactuated = \"platform\", or rotates = \"none\" to make `{}` the only one", name.value);
+        sink.report(Code::NotOneUnactuated, title, &name.span, "the second one", help);
+        sink.beside(sink.label(&rotation?.span, "no actuator turns the platform: the first one"));
         return None;
     }
     Some(Unactuated::Joint { leg, joint })
@@ -162,29 +120,16 @@ fn resolve_joint(
     match chain.iter().position(|j| *j == joint) {
         Some(0) => Some(0),
         Some(_) => {
-            let title = format!(
-                "`{}` cannot be unactuated: it does not hang on the platform",
-                name.value
-            );
+            let title = format!("`{}` cannot be unactuated: it does not hang on the platform", name.value);
             let help = format!("write unactuated = \"leg{}.{first}\"", leg + 1);
-            sink.report(
-                Code::NotOneUnactuated,
-                title,
-                &name.span,
-                "expected the leg's first joint",
-                help,
-            );
+            sink.report(Code::NotOneUnactuated, title, &name.span, "expected the leg's first joint", help);
             None
         }
         None => {
             let title = format!("leg {} has no joint `{joint}`", leg + 1);
             let help = match nearest(joint, chain.iter().copied()) {
                 Some(near) => format!("did you mean \"leg{}.{near}\"?", leg + 1),
-                None => format!(
-                    "its joints are {}: write \"leg{}.{first}\"",
-                    chain.join(", "),
-                    leg + 1
-                ),
+                None => format!("its joints are {}: write \"leg{}.{first}\"", chain.join(", "), leg + 1),
             };
             sink.report(Code::UnknownName, title, &name.span, "no such joint", help);
             None
@@ -210,19 +155,9 @@ pub(super) fn check_plane(raw: &RawGait, robot: &RobotFile, sink: &mut Sink) {
             told.push(&joint.name);
             let title = format!("joint `{}` leaves the plane of this gait", joint.name);
             let help = "give the joint axis = \"pitch\", or let the platform roll: moves = [\"x\", \"y\", \"z\"], rotates = \"roll\"";
-            sink.report(
-                Code::OutOfPlane,
-                title,
-                &rotation.span,
-                "a gait in the sagittal plane",
-                help,
-            );
+            sink.report(Code::OutOfPlane, title, &rotation.span, "a gait in the sagittal plane", help);
             let text = format!("`{}` does not turn about the pitch axis", joint.name);
-            sink.beside(Label {
-                source: robot.source.clone(),
-                span: axis.clone(),
-                text,
-            });
+            sink.beside(Label { source: robot.source.clone(), span: axis.clone(), text });
         }
     }
 }

@@ -18,10 +18,7 @@ impl View<'_> {
     pub fn text(&self, name: &str, sink: &mut Sink) -> Option<At<String>> {
         let field = self.field(name)?;
         match field.value {
-            DeValue::String(text) => Some(At {
-                value: text.to_string(),
-                span: field.span,
-            }),
+            DeValue::String(text) => Some(At { value: text.to_string(), span: field.span }),
             _ => field.wrong_type(sink),
         }
     }
@@ -53,20 +50,11 @@ impl View<'_> {
         for (i, word) in chosen.iter().enumerate() {
             if chosen[..i].iter().any(|w| w.value == word.value) {
                 let title = format!("`{}` names \"{}\" twice", field.path, words[word.value]);
-                sink.report(
-                    Code::WrongCount,
-                    title,
-                    &word.span,
-                    "named before",
-                    "remove one of them",
-                );
+                sink.report(Code::WrongCount, title, &word.span, "named before", "remove one of them");
                 return None;
             }
         }
-        Some(At {
-            value: chosen.into_iter().map(|w| w.value).collect(),
-            span: field.span,
-        })
+        Some(At { value: chosen.into_iter().map(|w| w.value).collect(), span: field.span })
     }
 
     pub fn order(&self, name: &str, sink: &mut Sink) -> Option<At<i64>> {
@@ -76,20 +64,11 @@ impl View<'_> {
         };
         let value = i64::from_str_radix(digits.as_str(), digits.radix()).ok();
         match value.filter(|v| orders.contains(v)) {
-            Some(value) => Some(At {
-                value,
-                span: field.span,
-            }),
+            Some(value) => Some(At { value, span: field.span }),
             None => {
                 let title = format!("`{}` cannot be {digits}", field.path);
                 let label = format!("must be {}", field.key.kind.shape());
-                sink.report(
-                    Code::UnknownChoice,
-                    title,
-                    &field.span,
-                    label,
-                    field.advice(),
-                );
+                sink.report(Code::UnknownChoice, title, &field.span, label, field.advice());
                 None
             }
         }
@@ -101,10 +80,7 @@ impl View<'_> {
             return None;
         };
         let value = field.number(field.value, &field.span, bound, sink)?;
-        Some(At {
-            value,
-            span: field.span,
-        })
+        Some(At { value, span: field.span })
     }
 
     pub fn vector(&self, name: &str, sink: &mut Sink) -> Option<At<[f64; 3]>> {
@@ -125,18 +101,9 @@ impl View<'_> {
         let title = format!("`{}` does not rise", field.path);
         let help = match low == high {
             true => format!("write a lower and a higher value: {}", field.key.template()),
-            false => format!(
-                "write the lower value first: {} = [{high:?}, {low:?}]",
-                field.key.name
-            ),
+            false => format!("write the lower value first: {} = [{high:?}, {low:?}]", field.key.name),
         };
-        sink.report(
-            Code::ReversedRange,
-            title,
-            &pair.span,
-            "lowest first, highest second",
-            help,
-        );
+        sink.report(Code::ReversedRange, title, &pair.span, "lowest first, highest second", help);
         None
     }
 
@@ -171,9 +138,6 @@ impl View<'_> {
                 all
             });
         }
-        Some(At {
-            value: all?,
-            span: field.span,
-        })
+        Some(At { value: all?, span: field.span })
     }
 }

@@ -37,10 +37,7 @@ pub struct Source {
 
 impl Source {
     pub fn new(path: &str, text: &str) -> Self {
-        Self {
-            path: path.into(),
-            text: text.into(),
-        }
+        Self { path: path.into(), text: text.into() }
     }
 
     /// The path as it shall be shown.
@@ -56,10 +53,7 @@ impl Source {
     pub fn line_column(&self, offset: usize) -> (usize, usize) {
         let before = &self.text[..self.boundary(offset)];
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        (
-            before.matches('\n').count() + 1,
-            before[line_start..].chars().count() + 1,
-        )
+        (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
     }
 
     /// The nearest character boundary at or before `offset`, inside the text.
@@ -97,18 +91,14 @@ impl Diagnostic {
 
     /// The message with its source lines, carets and labels; plain text without colours.
     pub fn render(&self) -> String {
-        let title = Level::ERROR
-            .primary_title(self.title.as_str())
-            .id(self.code.as_str());
+        let title = Level::ERROR.primary_title(self.title.as_str()).id(self.code.as_str());
         let primary = snippet(&self.primary, AnnotationKind::Primary);
         let group = match &self.secondary {
             None => title.element(primary),
             Some(label) if label.source == self.primary.source => {
                 title.element(primary.annotation(annotation(label, AnnotationKind::Context)))
             }
-            Some(label) => title
-                .element(primary)
-                .element(snippet(label, AnnotationKind::Context)),
+            Some(label) => title.element(primary).element(snippet(label, AnnotationKind::Context)),
         };
         Renderer::plain().render(&[group.element(Level::HELP.message(self.help.as_str()))])
     }
@@ -123,19 +113,13 @@ impl fmt::Display for Diagnostic {
 impl std::error::Error for Diagnostic {}
 
 fn snippet(label: &Label, kind: AnnotationKind) -> Snippet<'_, annotate_snippets::Annotation<'_>> {
-    Snippet::source(label.source.text())
-        .path(label.source.path())
-        .annotation(annotation(label, kind))
+    Snippet::source(label.source.text()).path(label.source.path()).annotation(annotation(label, kind))
 }
 
 /// The renderer insists on spans inside the text and on character boundaries; here they become so.
 fn annotation(label: &Label, kind: AnnotationKind) -> annotate_snippets::Annotation<'_> {
     let start = label.source.boundary(label.span.start);
-    let end = label
-        .source
-        .text()
-        .ceil_char_boundary(label.span.end)
-        .max(start);
+    let end = label.source.text().ceil_char_boundary(label.span.end).max(start);
     kind.span(start..end).label(label.text.as_str())
 }
 
@@ -148,10 +132,7 @@ pub(super) struct Sink {
 
 impl Sink {
     pub fn new(source: Source) -> Self {
-        Self {
-            source,
-            found: Vec::new(),
-        }
+        Self { source, found: Vec::new() }
     }
 
     /// Records a mistake in this file.
@@ -164,13 +145,7 @@ impl Sink {
         help: impl Into<String>,
     ) {
         let primary = self.label(span, label);
-        self.found.push(Diagnostic {
-            code,
-            title: title.into(),
-            primary,
-            secondary: None,
-            help: help.into(),
-        });
+        self.found.push(Diagnostic { code, title: title.into(), primary, secondary: None, help: help.into() });
     }
 
     /// Adds a second label to the mistake that was recorded last.
@@ -182,11 +157,7 @@ impl Sink {
 
     /// A label into this file.
     pub fn label(&self, span: &Span, text: impl Into<String>) -> Label {
-        Label {
-            source: self.source.clone(),
-            span: span.clone(),
-            text: text.into(),
-        }
+        Label { source: self.source.clone(), span: span.clone(), text: text.into() }
     }
 
     pub fn is_empty(&self) -> bool {
@@ -196,11 +167,7 @@ impl Sink {
     /// The mistakes in the order of the file.
     pub fn into_sorted(mut self) -> Vec<Diagnostic> {
         self.found.sort_by(|a, b| {
-            (a.primary.span.start, a.primary.span.end, a.code).cmp(&(
-                b.primary.span.start,
-                b.primary.span.end,
-                b.code,
-            ))
+            (a.primary.span.start, a.primary.span.end, a.code).cmp(&(b.primary.span.start, b.primary.span.end, b.code))
         });
         self.found
     }

@@ -29,13 +29,7 @@ impl Field<'_> {
         self.wrong_type_at(self.value, &self.span, self.key.kind.words(), sink)
     }
 
-    pub fn wrong_type_at<T>(
-        &self,
-        value: &DeValue<'_>,
-        span: &Span,
-        expected: &str,
-        sink: &mut Sink,
-    ) -> Option<T> {
+    pub fn wrong_type_at<T>(&self, value: &DeValue<'_>, span: &Span, expected: &str, sink: &mut Sink) -> Option<T> {
         let title = format!("`{}` must be {expected}, not {}", self.path, found(value));
         let help = match value {
             DeValue::String(text) if expected == "a number" && text.parse::<f64>().is_ok() => {
@@ -43,28 +37,13 @@ impl Field<'_> {
             }
             _ => self.advice(),
         };
-        sink.report(
-            Code::WrongType,
-            title,
-            span,
-            format!("expected {expected}"),
-            help,
-        );
+        sink.report(Code::WrongType, title, span, format!("expected {expected}"), help);
         None
     }
 
-    pub fn word(
-        &self,
-        text: &str,
-        words: &'static [&'static str],
-        span: &Span,
-        sink: &mut Sink,
-    ) -> Option<At<usize>> {
+    pub fn word(&self, text: &str, words: &'static [&'static str], span: &Span, sink: &mut Sink) -> Option<At<usize>> {
         if let Some(value) = words.iter().position(|w| *w == text) {
-            return Some(At {
-                value,
-                span: span.clone(),
-            });
+            return Some(At { value, span: span.clone() });
         }
         let all: Vec<_> = words.iter().map(|w| format!("\"{w}\"")).collect();
         let all = all.join(", ");
@@ -73,31 +52,15 @@ impl Field<'_> {
             None => format!("write one of {all}: {}", self.key.doc),
         };
         let title = format!("`{}` cannot be \"{text}\"", self.path);
-        sink.report(
-            Code::UnknownChoice,
-            title,
-            span,
-            format!("must be one of {all}"),
-            help,
-        );
+        sink.report(Code::UnknownChoice, title, span, format!("must be one of {all}"), help);
         None
     }
 
-    pub fn number(
-        &self,
-        value: &DeValue<'_>,
-        span: &Span,
-        bound: Bound,
-        sink: &mut Sink,
-    ) -> Option<f64> {
+    pub fn number(&self, value: &DeValue<'_>, span: &Span, bound: Bound, sink: &mut Sink) -> Option<f64> {
         let Some(number) = as_number(value) else {
             return self.wrong_type_at(value, span, "a number", sink);
         };
-        let unit = if self.key.unit.is_empty() {
-            String::new()
-        } else {
-            format!("{}, ", self.key.unit)
-        };
+        let unit = if self.key.unit.is_empty() { String::new() } else { format!("{}, ", self.key.unit) };
         if number.is_nan() || number.abs() > LARGEST {
             let title = format!("`{}` is not a number that a robot can have", self.path);
             let label = format!("{unit}{}, at most 1e9", bound.text());
@@ -105,13 +68,7 @@ impl Field<'_> {
         } else if !bound.admits(number) {
             let title = format!("`{}` must be {}", self.path, bound.text());
             let label = format!("{unit}{}", bound.text());
-            sink.report(
-                Code::OutOfBounds,
-                title,
-                span,
-                label,
-                self.bounds_advice(number, bound),
-            );
+            sink.report(Code::OutOfBounds, title, span, label, self.bounds_advice(number, bound));
         } else {
             return Some(number);
         }
@@ -120,10 +77,7 @@ impl Field<'_> {
 
     fn bounds_advice(&self, number: f64, bound: Bound) -> String {
         match bound {
-            Bound::Angle => format!(
-                "angles are in rad: write {:.4} for {number} degrees",
-                number.to_radians()
-            ),
+            Bound::Angle => format!("angles are in rad: write {:.4} for {number} degrees", number.to_radians()),
             _ if number < 0.0 => format!("remove the sign: {:?}", -number),
             _ => self.advice(),
         }
@@ -133,23 +87,12 @@ impl Field<'_> {
         let DeValue::Array(items) = self.value else {
             return self.wrong_type(sink);
         };
-        let read: Vec<_> = items
-            .iter()
-            .map(|item| self.number(item.get_ref(), &item.span(), bound, sink))
-            .collect();
+        let read: Vec<_> = items.iter().map(|item| self.number(item.get_ref(), &item.span(), bound, sink)).collect();
         let numbers: Option<Vec<f64>> = read.into_iter().collect();
         match <[f64; N]>::try_from(numbers?) {
-            Ok(value) => Some(At {
-                value,
-                span: self.span.clone(),
-            }),
+            Ok(value) => Some(At { value, span: self.span.clone() }),
             Err(numbers) => {
-                let title = format!(
-                    "`{}` must be {}, not {}",
-                    self.path,
-                    self.key.kind.words(),
-                    numbers.len()
-                );
+                let title = format!("`{}` must be {}, not {}", self.path, self.key.kind.words(), numbers.len());
                 let label = format!("expected {N} numbers");
                 sink.report(Code::WrongCount, title, &self.span, label, self.advice());
                 None
@@ -157,27 +100,16 @@ impl Field<'_> {
         }
     }
 
-    pub fn name_list(
-        &self,
-        items: &[toml::Spanned<DeValue<'_>>],
-        span: &Span,
-        sink: &mut Sink,
-    ) -> Option<Names> {
+    pub fn name_list(&self, items: &[toml::Spanned<DeValue<'_>>], span: &Span, sink: &mut Sink) -> Option<Names> {
         let read: Vec<_> = items
             .iter()
             .map(|item| match item.get_ref() {
-                DeValue::String(text) => Some(At {
-                    value: text.to_string(),
-                    span: item.span(),
-                }),
+                DeValue::String(text) => Some(At { value: text.to_string(), span: item.span() }),
                 other => self.wrong_type_at(other, &item.span(), "a name in quotes", sink),
             })
             .collect();
         let names: Option<Vec<_>> = read.into_iter().collect();
-        Some(At {
-            value: names?,
-            span: span.clone(),
-        })
+        Some(At { value: names?, span: span.clone() })
     }
 }
 

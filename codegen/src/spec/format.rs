@@ -1,9 +1,7 @@
 //! The format: the tables of `robot.toml` and of a gait file, key by key, with units, bounds and defaults.
 
 use super::keys::Bound::{Angle, NonNegative, Positive};
-use super::keys::Kind::{
-    Choice, Choices, Com, Coordinate, Map, Name, NameLists, Number, Order, Pair, Text, Vector,
-};
+use super::keys::Kind::{Choice, Choices, Com, Coordinate, Map, Name, NameLists, Number, Order, Pair, Text, Vector};
 use super::keys::{Key, Kind, Table};
 
 pub(super) static ROBOT: Table = Table {
@@ -11,36 +9,16 @@ pub(super) static ROBOT: Table = Table {
     doc: "A legged robot: a platform and the legs that hang on it.",
     keys: &[
         Key::new("name", Text, "", "What the robot is called."),
-        Key::new(
-            "gravity",
-            Number(Positive),
-            "m/s²",
-            "Magnitude of gravity, along -y.",
-        ),
+        Key::new("gravity", Number(Positive), "m/s²", "Magnitude of gravity, along -y."),
         Key::new(
             "links",
             Map(&[&PLATFORM, &LINK]),
             "",
             "The rigid bodies. The one that no joint has as its child is the platform.",
         ),
-        Key::new(
-            "joints",
-            Map(&[&JOINT]),
-            "",
-            "The rotating joints; with their links they form the legs' chains.",
-        ),
-        Key::new(
-            "legs",
-            Map(&[&LEG]),
-            "",
-            "Where each leg hangs on the platform.",
-        ),
-        Key::new(
-            "actuators",
-            Map(&[&ACTUATOR]),
-            "",
-            "The motors, stated for a virtual leg's joint.",
-        ),
+        Key::new("joints", Map(&[&JOINT]), "", "The rotating joints; with their links they form the legs' chains."),
+        Key::new("legs", Map(&[&LEG]), "", "Where each leg hangs on the platform."),
+        Key::new("actuators", Map(&[&ACTUATOR]), "", "The motors, stated for a virtual leg's joint."),
     ],
 };
 
@@ -49,13 +27,8 @@ pub(super) static PLATFORM: Table = Table {
     doc: "The link that carries the legs.",
     keys: &[
         Key::new("mass", Number(Positive), "kg", "Mass."),
-        Key::new(
-            "com",
-            Vector,
-            "m",
-            "Mass centre in the frame of the legs' mounts: x forward, y up, z to the right.",
-        )
-        .or("[0, 0, 0]"),
+        Key::new("com", Vector, "m", "Mass centre in the frame of the legs' mounts: x forward, y up, z to the right.")
+            .or("[0, 0, 0]"),
         Key::new(
             "inertia",
             Kind::Table(&PLATFORM_INERTIA),
@@ -71,12 +44,7 @@ pub(super) static PLATFORM_INERTIA: Table = Table {
     keys: &[
         Key::new("roll", Number(NonNegative), "kg·m²", "About x, forward."),
         Key::new("yaw", Number(NonNegative), "kg·m²", "About y, up."),
-        Key::new(
-            "pitch",
-            Number(NonNegative),
-            "kg·m²",
-            "About z, to the right.",
-        ),
+        Key::new("pitch", Number(NonNegative), "kg·m²", "About z, to the right."),
     ],
 };
 
@@ -85,24 +53,14 @@ pub(super) static LINK: Table = Table {
     doc: "A link of a leg. Its axes are the platform's where all joints are at zero: x forward, y up, z to the right.",
     keys: &[
         Key::new("mass", Number(Positive), "kg", "Mass."),
-        Key::new(
-            "length",
-            Number(Positive),
-            "m",
-            "From its joint to the next one, or to the foot, along -y.",
-        ),
+        Key::new("length", Number(Positive), "m", "From its joint to the next one, or to the foot, along -y."),
         Key::new(
             "com",
             Com,
             "m",
             "Mass centre: distance from its joint along the link, or [x, y, z] in the link's axes.",
         ),
-        Key::new(
-            "inertia",
-            Kind::Table(&LINK_INERTIA),
-            "kg·m²",
-            "Principal moments of inertia about the mass centre.",
-        ),
+        Key::new("inertia", Kind::Table(&LINK_INERTIA), "kg·m²", "Principal moments of inertia about the mass centre."),
     ],
 };
 
@@ -110,24 +68,9 @@ pub(super) static LINK_INERTIA: Table = Table {
     noun: "a link's inertia",
     doc: "Moments about the mass centre, in the link's axes.",
     keys: &[
-        Key::new(
-            "swing",
-            Number(NonNegative),
-            "kg·m²",
-            "About the transverse axis z.",
-        ),
-        Key::new(
-            "lateral",
-            Number(NonNegative),
-            "kg·m²",
-            "About the forward axis x.",
-        ),
-        Key::new(
-            "axial",
-            Number(NonNegative),
-            "kg·m²",
-            "About the link's own axis y.",
-        ),
+        Key::new("swing", Number(NonNegative), "kg·m²", "About the transverse axis z."),
+        Key::new("lateral", Number(NonNegative), "kg·m²", "About the forward axis x."),
+        Key::new("axial", Number(NonNegative), "kg·m²", "About the link's own axis y."),
     ],
 };
 
@@ -156,19 +99,9 @@ pub(super) static LEG: Table = Table {
     noun: "a leg",
     doc: "A chain of joints and links that hangs on the platform.",
     keys: &[
-        Key::new(
-            "mount",
-            Vector,
-            "m",
-            "Its first joint in the platform's frame: x forward, y up, z to the right.",
-        ),
-        Key::new(
-            "first_joint",
-            Name,
-            "",
-            "The joint with which the chain starts.",
-        )
-        .or("the only joint that hangs on the platform"),
+        Key::new("mount", Vector, "m", "Its first joint in the platform's frame: x forward, y up, z to the right."),
+        Key::new("first_joint", Name, "", "The joint with which the chain starts.")
+            .or("the only joint that hangs on the platform"),
     ],
 };
 
@@ -176,18 +109,8 @@ pub(super) static ACTUATOR: Table = Table {
     noun: "an actuator",
     doc: "The motor of a virtual leg's joint.",
     keys: &[
-        Key::new(
-            "gear",
-            Number(Positive),
-            "motor turns per joint turn",
-            "Gear ratio.",
-        ),
-        Key::new(
-            "max_torque",
-            Number(Positive),
-            "N·m at the motor",
-            "Greatest torque.",
-        ),
+        Key::new("gear", Number(Positive), "motor turns per joint turn", "Gear ratio."),
+        Key::new("max_torque", Number(Positive), "N·m at the motor", "Greatest torque."),
         Key::new(
             "max_speed",
             Kind::Table(&MAX_SPEED),
@@ -208,12 +131,7 @@ pub(super) static MAX_SPEED: Table = Table {
     doc: "Greatest speed of a motor.",
     keys: &[
         Key::new("unloaded", Number(Positive), "rev/min", "At no torque."),
-        Key::new(
-            "at_max_torque",
-            Number(Positive),
-            "rev/min",
-            "At the greatest torque; no more than unloaded.",
-        ),
+        Key::new("at_max_torque", Number(Positive), "rev/min", "At the greatest torque; no more than unloaded."),
     ],
 };
 
@@ -226,50 +144,23 @@ pub(super) static GAIT: Table = Table {
     noun: "a gait",
     doc: "How a gait uses the robot.",
     keys: &[
-        Key::new(
-            "name",
-            Text,
-            "",
-            "What the gait is called; names the generated module.",
-        )
-        .or("the file's name"),
+        Key::new("name", Text, "", "What the gait is called; names the generated module.").or("the file's name"),
         Key::new(
             "virtual_legs",
             NameLists,
             "",
             "The legs that move together as virtual leg 1, and those that form virtual leg 2. A gait starts on leg 1.",
         ),
-        Key::new(
-            "platform",
-            Kind::Table(&MOTION),
-            "",
-            "How the platform may move.",
-        ),
-        Key::new(
-            "unactuated",
-            Coordinate,
-            "",
-            "The one coordinate that no actuator drives.",
-        ),
+        Key::new("platform", Kind::Table(&MOTION), "", "How the platform may move."),
+        Key::new("unactuated", Coordinate, "", "The one coordinate that no actuator drives."),
         Key::new(
             "half_steps",
             Choice(HALF_STEPS),
             "",
             "Whether the second half step mirrors the first one, with the virtual legs exchanged.",
         ),
-        Key::new(
-            "polynomial_order",
-            Order(&[4, 6, 8]),
-            "",
-            "Order of the joints' polynomials in time.",
-        )
-        .or("4"),
-        Key::new(
-            "limits",
-            Kind::Table(&LIMITS),
-            "",
-            "What a motion must keep to.",
-        ),
+        Key::new("polynomial_order", Order(&[4, 6, 8]), "", "Order of the joints' polynomials in time.").or("4"),
+        Key::new("limits", Kind::Table(&LIMITS), "", "What a motion must keep to."),
     ],
 };
 
@@ -286,12 +177,7 @@ pub(super) static MOTION: Table = Table {
             "",
             "x and y (forward, up) for a planar gait; z (to the right) too where the platform rolls.",
         ),
-        Key::new(
-            "rotates",
-            Choice(ROTATIONS),
-            "",
-            "The one rotation: none, pitch (about z) or roll (about x).",
-        ),
+        Key::new("rotates", Choice(ROTATIONS), "", "The one rotation: none, pitch (about z) or roll (about x)."),
     ],
 };
 
@@ -305,23 +191,13 @@ pub(super) static LIMITS: Table = Table {
             "tangential / vertical force",
             "Friction coefficient between foot and ground.",
         ),
-        Key::new(
-            "min_vertical_force",
-            Number(NonNegative),
-            "N",
-            "Least vertical force on the stance leg.",
-        ),
+        Key::new("min_vertical_force", Number(NonNegative), "N", "Least vertical force on the stance leg."),
         Key::new(
             "swing_clearance",
             Number(NonNegative),
             "m",
             "Height of the parabola above which the swing foot stays.",
         ),
-        Key::new(
-            "half_step_duration",
-            Pair(Positive),
-            "s",
-            "Shortest and longest half step.",
-        ),
+        Key::new("half_step_duration", Pair(Positive), "s", "Shortest and longest half step."),
     ],
 };

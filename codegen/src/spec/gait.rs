@@ -47,28 +47,20 @@ fn read(path: &str, text: &str, robot: &RobotFile, sink: &mut Sink) -> Option<Ga
     let raw = RawGait {
         virtual_legs: root.name_lists("virtual_legs", sink),
         moves: platform.as_ref().and_then(|p| p.choices("moves", sink)),
-        rotation: platform
-            .as_ref()
-            .and_then(|p| p.choice("rotates", sink))
-            .map(|word| At {
-                value: [Rotation::None, Rotation::Pitch, Rotation::Roll][word.value.min(2)],
-                span: word.span,
-            }),
-        unactuated: coordinates::single(&root, sink),
-        half_steps: root.choice("half_steps", sink).map(|word| At {
-            value: [HalfSteps::Mirrored, HalfSteps::Distinct][word.value.min(1)],
+        rotation: platform.as_ref().and_then(|p| p.choice("rotates", sink)).map(|word| At {
+            value: [Rotation::None, Rotation::Pitch, Rotation::Roll][word.value.min(2)],
             span: word.span,
         }),
+        unactuated: coordinates::single(&root, sink),
+        half_steps: root
+            .choice("half_steps", sink)
+            .map(|word| At { value: [HalfSteps::Mirrored, HalfSteps::Distinct][word.value.min(1)], span: word.span }),
     };
     let polynomial_order = match root.has("polynomial_order") {
-        true => root
-            .order("polynomial_order", sink)
-            .and_then(|order| usize::try_from(order.value).ok()),
+        true => root.order("polynomial_order", sink).and_then(|order| usize::try_from(order.value).ok()),
         false => Some(4),
     };
-    let limits = root
-        .table("limits", sink)
-        .and_then(|view| limits(&view, sink));
+    let limits = root.table("limits", sink).and_then(|view| limits(&view, sink));
 
     let lateral = coordinates::lateral(&raw, sink);
     let virtual_legs = pairing::virtual_legs(&raw, &root.key_span("virtual_legs"), robot, sink);

@@ -84,19 +84,8 @@ impl Bound {
 }
 
 impl Key {
-    pub const fn new(
-        name: &'static str,
-        kind: Kind,
-        unit: &'static str,
-        doc: &'static str,
-    ) -> Self {
-        Self {
-            name,
-            kind,
-            unit,
-            default: None,
-            doc,
-        }
+    pub const fn new(name: &'static str, kind: Kind, unit: &'static str, doc: &'static str) -> Self {
+        Self { name, kind, unit, default: None, doc }
     }
 
     /// The key may be absent; then this is used.
@@ -107,11 +96,7 @@ impl Key {
 
     /// How the key is written, with its unit: `range = [lowest, highest]  # rad`.
     pub fn template(&self) -> String {
-        let comment = if self.unit.is_empty() {
-            String::new()
-        } else {
-            format!("  # {}", self.unit)
-        };
+        let comment = if self.unit.is_empty() { String::new() } else { format!("  # {}", self.unit) };
         match self.kind {
             Kind::Map(_) => format!("[{}.<name>]", self.name),
             _ => format!("{} = {}{comment}", self.name, self.kind.shape()),
@@ -124,16 +109,8 @@ impl Kind {
     pub fn shape(&self) -> String {
         match self {
             Self::Text | Self::Name => "\"…\"".into(),
-            Self::Choice(words) => words
-                .iter()
-                .map(|w| format!("\"{w}\""))
-                .collect::<Vec<_>>()
-                .join(" or "),
-            Self::Order(orders) => orders
-                .iter()
-                .map(i64::to_string)
-                .collect::<Vec<_>>()
-                .join(" or "),
+            Self::Choice(words) => words.iter().map(|w| format!("\"{w}\"")).collect::<Vec<_>>().join(" or "),
+            Self::Order(orders) => orders.iter().map(i64::to_string).collect::<Vec<_>>().join(" or "),
             Self::Number(_) | Self::Com => "…".into(),
             Self::Vector => "[x, y, z]".into(),
             Self::Pair(_) => "[lowest, highest]".into(),
@@ -145,9 +122,7 @@ impl Kind {
             Self::Coordinate => "\"platform\" or \"leg1.<joint>\"".into(),
             Self::Table(table) => {
                 let keys = table.keys.iter().filter(|k| k.default.is_none());
-                let parts: Vec<_> = keys
-                    .map(|k| format!("{} = {}", k.name, k.kind.shape()))
-                    .collect();
+                let parts: Vec<_> = keys.map(|k| format!("{} = {}", k.name, k.kind.shape())).collect();
                 format!("{{ {} }}", parts.join(", "))
             }
             Self::Map(_) => "{ <name> = { … } }".into(),

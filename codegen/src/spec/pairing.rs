@@ -14,40 +14,21 @@ use super::types::{Leg, Rotation};
 pub(super) const SAME: f64 = 1e-9;
 
 /// Resolves the two virtual legs: indices into the robot's legs. `at` is where the key stands.
-pub(super) fn virtual_legs(
-    raw: &RawGait,
-    at: &Span,
-    robot: &RobotFile,
-    sink: &mut Sink,
-) -> Option<[Vec<usize>; 2]> {
+pub(super) fn virtual_legs(raw: &RawGait, at: &Span, robot: &RobotFile, sink: &mut Sink) -> Option<[Vec<usize>; 2]> {
     let lists = raw.virtual_legs.as_ref()?;
     let [first, second] = &lists.value[..] else {
-        let title = format!(
-            "a gait has two virtual legs, this one has {}",
-            lists.value.len()
-        );
+        let title = format!("a gait has two virtual legs, this one has {}", lists.value.len());
         let help = "write two lists of legs: virtual_legs = [[\"…\", \"…\"], [\"…\", \"…\"]]";
-        sink.report(
-            Code::NotTwoVirtualLegs,
-            title,
-            &lists.span,
-            "expected two lists",
-            help,
-        );
+        sink.report(Code::NotTwoVirtualLegs, title, &lists.span, "expected two lists", help);
         return None;
     };
     let resolved = [first, second].map(|list| resolve(list, robot, sink));
     let [Some(first_legs), Some(second_legs)] = resolved else {
         return None;
     };
-    let once = check_each_once(
-        [(first, &first_legs), (second, &second_legs)],
-        at,
-        robot,
-        sink,
-    );
-    let paired = [(first, &first_legs), (second, &second_legs)]
-        .map(|(list, legs)| check_pair(raw, list, legs, robot, sink));
+    let once = check_each_once([(first, &first_legs), (second, &second_legs)], at, robot, sink);
+    let paired =
+        [(first, &first_legs), (second, &second_legs)].map(|(list, legs)| check_pair(raw, list, legs, robot, sink));
     (once && paired == [true, true]).then_some([first_legs, second_legs])
 }
 
@@ -89,10 +70,7 @@ fn resolve(list: &Names, robot: &RobotFile, sink: &mut Sink) -> Option<Vec<usize
 }
 
 fn names(legs: &[Leg]) -> String {
-    legs.iter()
-        .map(|leg| format!("\"{}\"", leg.name))
-        .collect::<Vec<_>>()
-        .join(", ")
+    legs.iter().map(|leg| format!("\"{}\"", leg.name)).collect::<Vec<_>>().join(", ")
 }
 
 /// A list of names as written, with the legs that they mean.
@@ -102,28 +80,15 @@ type Listed<'l> = (&'l Names, &'l Vec<usize>);
 fn check_each_once(lists: [Listed<'_>; 2], at: &Span, robot: &RobotFile, sink: &mut Sink) -> bool {
     let mentions: Vec<(usize, &Span)> = lists
         .iter()
-        .flat_map(|(list, legs)| {
-            legs.iter()
-                .copied()
-                .zip(list.value.iter().map(|name| &name.span))
-        })
+        .flat_map(|(list, legs)| legs.iter().copied().zip(list.value.iter().map(|name| &name.span)))
         .collect();
     let mut good = true;
     for (i, (leg, span)) in mentions.iter().enumerate() {
         let Some((_, before)) = mentions[..i].iter().find(|(other, _)| other == leg) else {
             continue;
         };
-        let title = format!(
-            "leg `{}` is part of two virtual legs",
-            robot.robot.legs[*leg].name
-        );
-        sink.report(
-            Code::LegTwice,
-            title,
-            span,
-            "named again",
-            "name each leg once",
-        );
+        let title = format!("leg `{}` is part of two virtual legs", robot.robot.legs[*leg].name);
+        sink.report(Code::LegTwice, title, span, "named again", "name each leg once");
         sink.beside(sink.label(before, "named here"));
         good = false;
     }
@@ -132,10 +97,7 @@ fn check_each_once(lists: [Listed<'_>; 2], at: &Span, robot: &RobotFile, sink: &
             continue;
         }
         let title = format!("leg `{}` is part of no virtual leg", leg.name);
-        let help = format!(
-            "every leg carries the robot: add \"{}\" to one of the two lists",
-            leg.name
-        );
+        let help = format!("every leg carries the robot: add \"{}\" to one of the two lists", leg.name);
         sink.report(Code::IdleLeg, title, at, "not named here", help);
         sink.beside(place(robot, i, |p| &p.name, "this leg"));
         good = false;
@@ -145,13 +107,7 @@ fn check_each_once(lists: [Listed<'_>; 2], at: &Span, robot: &RobotFile, sink: &
 
 /// Legs that move as one need the same joints, and feet that touch the ground together: mounts at the same
 /// height, and at the same place across the axis about which the platform rotates.
-fn check_pair(
-    raw: &RawGait,
-    list: &Names,
-    legs: &[usize],
-    robot: &RobotFile,
-    sink: &mut Sink,
-) -> bool {
+fn check_pair(raw: &RawGait, list: &Names, legs: &[usize], robot: &RobotFile, sink: &mut Sink) -> bool {
     let all = &robot.robot.legs;
     let Some(&lead) = legs.first() else {
         return false;
@@ -179,34 +135,19 @@ fn check_pair(
             Rotation::Pitch => &[0, 1],
             Rotation::Roll => &[1, 2],
         };
-        let apart = shared
-            .iter()
-            .find(|&&k| (all[leg].mount[k] - all[lead].mount[k]).abs() > SAME);
+        let apart = shared.iter().find(|&&k| (all[leg].mount[k] - all[lead].mount[k]).abs() > SAME);
         if let Some(&k) = apart {
-            let title = format!(
-                "legs `{}` and `{}` cannot move as one",
-                all[lead].name, all[leg].name
-            );
-            let label = format!(
-                "mounted at another {} than `{}`",
-                DIRECTIONS[k], all[lead].name
-            );
+            let title = format!("legs `{}` and `{}` cannot move as one", all[lead].name, all[leg].name);
+            let label = format!("mounted at another {} than `{}`", DIRECTIONS[k], all[lead].name);
             let help = match rotation {
-                Rotation::Pitch => {
-                    "the platform pitches: pair the hind legs, and the fore legs (the same x and y)"
-                }
+                Rotation::Pitch => "the platform pitches: pair the hind legs, and the fore legs (the same x and y)",
                 Rotation::Roll => {
                     "the platform rolls: pair the legs of the right side, and those of the left (the same y and z)"
                 }
                 Rotation::None => "pair legs that are mounted at the same height (the same y)",
             };
             sink.report(Code::LegsDoNotPair, title, &name.span, label, help);
-            sink.beside(place(
-                robot,
-                leg,
-                |p| &p.mount,
-                &format!("mount of `{}`", all[leg].name),
-            ));
+            sink.beside(place(robot, leg, |p| &p.mount, &format!("mount of `{}`", all[leg].name)));
             good = false;
         }
     }
@@ -215,10 +156,7 @@ fn check_pair(
 
 /// Names of a leg's joints: legs with the same joints have the same links too.
 pub(super) fn joints(leg: &Leg) -> Vec<&str> {
-    leg.chain
-        .iter()
-        .map(|segment| segment.joint.name.as_str())
-        .collect()
+    leg.chain.iter().map(|segment| segment.joint.name.as_str()).collect()
 }
 
 /// A label into the robot's file.
@@ -228,13 +166,6 @@ pub(super) fn place(
     part: impl Fn(&super::robot::LegPlaces) -> &Span,
     text: &str,
 ) -> Label {
-    let span = robot
-        .places
-        .get(leg)
-        .map_or(0..0, |places| part(places).clone());
-    Label {
-        source: robot.source.clone(),
-        span,
-        text: text.to_string(),
-    }
+    let span = robot.places.get(leg).map_or(0..0, |places| part(places).clone());
+    Label { source: robot.source.clone(), span, text: text.to_string() }
 }

@@ -46,11 +46,7 @@ pub fn parse_robot(path: &str, text: &str) -> Result<RobotFile, Vec<Diagnostic>>
     let mut sink = Sink::new(source.clone());
     let read = read(text, &mut sink);
     match read {
-        Some((robot, places)) if sink.is_empty() => Ok(RobotFile {
-            robot,
-            source,
-            places,
-        }),
+        Some((robot, places)) if sink.is_empty() => Ok(RobotFile { robot, source, places }),
         _ => Err(sink.into_sorted()),
     }
 }
@@ -62,15 +58,7 @@ fn read(text: &str, sink: &mut Sink) -> Option<(Robot, Vec<LegPlaces>)> {
     let gravity = root.number("gravity", sink);
     let parts = parts(&root, sink);
     let (platform, legs, places) = chain::assemble(parts, sink)?;
-    Some((
-        Robot {
-            name: name?,
-            gravity: gravity?.value,
-            platform,
-            legs,
-        },
-        places,
-    ))
+    Some((Robot { name: name?, gravity: gravity?.value, platform, legs }, places))
 }
 
 /// All named tables; `None` stands for one with mistakes, so that references to it still resolve.
@@ -98,16 +86,8 @@ fn parts(root: &View<'_>, sink: &mut Sink) -> Parts {
 
 type Views<'t> = Vec<(At<String>, Option<View<'t>>)>;
 
-fn each<'t, T>(
-    views: Option<Views<'t>>,
-    mut read: impl FnMut(At<String>, Option<View<'t>>) -> T,
-) -> Option<Vec<T>> {
-    Some(
-        views?
-            .into_iter()
-            .map(|(name, view)| read(name, view))
-            .collect(),
-    )
+fn each<'t, T>(views: Option<Views<'t>>, mut read: impl FnMut(At<String>, Option<View<'t>>) -> T) -> Option<Vec<T>> {
+    Some(views?.into_iter().map(|(name, view)| read(name, view)).collect())
 }
 
 /// A joint as written; what could not be read is `None`.
@@ -123,10 +103,7 @@ pub(super) struct RawJoint {
 impl RawJoint {
     fn read(name: At<String>, view: Option<View<'_>>, sink: &mut Sink) -> Self {
         let mut joint = Self {
-            axis: At {
-                value: Axis::Pitch,
-                span: name.span.clone(),
-            },
+            axis: At { value: Axis::Pitch, span: name.span.clone() },
             name,
             parent: None,
             child: None,
@@ -142,10 +119,7 @@ impl RawJoint {
                 1 => Axis::Yaw,
                 _ => Axis::Pitch,
             };
-            joint.axis = At {
-                value,
-                span: word.span,
-            };
+            joint.axis = At { value, span: word.span };
         }
         joint.range = view.pair("range", sink).map(|range| range.value);
         joint.actuator = view.text("actuator", sink);
@@ -163,19 +137,11 @@ pub(super) struct RawLeg {
 impl RawLeg {
     fn read(name: At<String>, view: Option<View<'_>>, sink: &mut Sink) -> Self {
         let Some(view) = view else {
-            return Self {
-                name,
-                mount: None,
-                first_joint: None,
-            };
+            return Self { name, mount: None, first_joint: None };
         };
         let mount = view.vector("mount", sink);
         let first_joint = view.text("first_joint", sink);
-        Self {
-            name,
-            mount,
-            first_joint,
-        }
+        Self { name, mount, first_joint }
     }
 }
 
@@ -187,32 +153,15 @@ pub(super) enum Body {
 
 /// Reads the links. One that no joint has as its child is the platform, unless it has a length and another
 /// one fits better: then a joint's `child` is misspelt, and that is reported where it stands.
-fn links(
-    root: &View<'_>,
-    joints: &[RawJoint],
-    sink: &mut Sink,
-) -> Option<Vec<(At<String>, Option<Body>)>> {
-    let is_child = |name: &str| {
-        joints
-            .iter()
-            .any(|j| j.child.as_ref().is_some_and(|c| c.value == name))
-    };
+fn links(root: &View<'_>, joints: &[RawJoint], sink: &mut Sink) -> Option<Vec<(At<String>, Option<Body>)>> {
+    let is_child = |name: &str| joints.iter().any(|j| j.child.as_ref().is_some_and(|c| c.value == name));
     let lengths = root.peek("links", "length");
-    let platform_elsewhere = |name: &str| {
-        lengths
-            .iter()
-            .any(|(other, has_length)| other != name && !has_length && !is_child(other))
-    };
+    let platform_elsewhere =
+        |name: &str| lengths.iter().any(|(other, has_length)| other != name && !has_length && !is_child(other));
     let form = |name: &str, has_length: bool| -> &'static Table {
-        if is_child(name) || (has_length && platform_elsewhere(name)) {
-            &format::LINK
-        } else {
-            &format::PLATFORM
-        }
+        if is_child(name) || (has_length && platform_elsewhere(name)) { &format::LINK } else { &format::PLATFORM }
     };
-    let views = root.map("links", sink, |name, entries| {
-        form(name, entries.contains_key("length"))
-    });
+    let views = root.map("links", sink, |name, entries| form(name, entries.contains_key("length")));
     each(views, |name, view| {
         let body = view.and_then(|view| match view.is(&format::LINK) {
             true => link(&name.value, &view, sink).map(Body::Link),

@@ -16,18 +16,9 @@ pub fn gait_schema() -> String {
 }
 
 fn schema(root: &Table) -> String {
-    let mut out =
-        String::from("{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n");
-    let _ = write!(
-        out,
-        "  \"title\": {},\n  ",
-        quoted(root.noun.trim_start_matches("a "))
-    );
-    out.push_str(
-        table(root, root.doc, 1)
-            .trim_start_matches("{\n")
-            .trim_start(),
-    );
+    let mut out = String::from("{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n");
+    let _ = write!(out, "  \"title\": {},\n  ", quoted(root.noun.trim_start_matches("a ")));
+    out.push_str(table(root, root.doc, 1).trim_start_matches("{\n").trim_start());
     out.push('\n');
     out
 }
@@ -35,16 +26,9 @@ fn schema(root: &Table) -> String {
 /// An object with fixed keys.
 fn table(table: &Table, description: &str, depth: usize) -> String {
     let pad = "  ".repeat(depth);
-    let required = table
-        .keys
-        .iter()
-        .filter(|k| k.default.is_none())
-        .map(|k| k.name);
-    let properties: Vec<_> = table
-        .keys
-        .iter()
-        .map(|k| format!("{pad}  {}: {}", quoted(k.name), property(k, depth + 1)))
-        .collect();
+    let required = table.keys.iter().filter(|k| k.default.is_none()).map(|k| k.name);
+    let properties: Vec<_> =
+        table.keys.iter().map(|k| format!("{pad}  {}: {}", quoted(k.name), property(k, depth + 1))).collect();
     let end = "  ".repeat(depth - 1);
     format!(
         "{{\n{pad}\"description\": {},\n{pad}\"type\": \"object\",\n{pad}\"additionalProperties\": false,\n\
@@ -85,10 +69,7 @@ fn one_of(forms: &[&Table], depth: usize) -> String {
         return table(only, only.doc, depth + 1);
     }
     let pad = "  ".repeat(depth);
-    let forms: Vec<_> = forms
-        .iter()
-        .map(|form| format!("{pad}  {}", table(form, form.doc, depth + 2)))
-        .collect();
+    let forms: Vec<_> = forms.iter().map(|form| format!("{pad}  {}", table(form, form.doc, depth + 2))).collect();
     format!("{{ \"anyOf\": [\n{}\n{pad}] }}", forms.join(",\n"))
 }
 
@@ -109,7 +90,9 @@ fn value(kind: &Kind) -> String {
         Kind::NameLists => "\"type\": \"array\", \"minItems\": 2, \"maxItems\": 2, \"items\": \
              { \"type\": \"array\", \"minItems\": 1, \"uniqueItems\": true, \"items\": { \"type\": \"string\" } }"
             .into(),
-        Kind::Coordinate => "\"type\": \"string\", \"pattern\": \"^(platform|leg[12][.][A-Za-z][A-Za-z0-9_]*)$\"".into(),
+        Kind::Coordinate => {
+            "\"type\": \"string\", \"pattern\": \"^(platform|leg[12][.][A-Za-z][A-Za-z0-9_]*)$\"".into()
+        }
         // Tables are written by `property`.
         Kind::Table(_) | Kind::Map(_) => "\"type\": \"object\"".into(),
     }
@@ -126,10 +109,7 @@ fn number(bound: Bound) -> String {
 }
 
 fn list(bound: Bound, length: usize) -> String {
-    format!(
-        "\"type\": \"array\", \"minItems\": {length}, \"maxItems\": {length}, \"items\": {{ {} }}",
-        number(bound)
-    )
+    format!("\"type\": \"array\", \"minItems\": {length}, \"maxItems\": {length}, \"items\": {{ {} }}", number(bound))
 }
 
 fn words<'w>(all: impl Iterator<Item = &'w str>) -> String {

@@ -11,10 +11,7 @@ pub(super) fn document<'t>(text: &'t str, sink: &mut Sink) -> Option<DeTable<'t>
     if errors.is_empty() {
         return Some(table.into_inner());
     }
-    let mut errors: Vec<_> = errors
-        .into_iter()
-        .map(|e| (e.span().unwrap_or(0..0), e.message().to_string()))
-        .collect();
+    let mut errors: Vec<_> = errors.into_iter().map(|e| (e.span().unwrap_or(0..0), e.message().to_string())).collect();
     errors.sort_by_key(|(span, _)| span.start);
     // After a slip the parser stumbles on, line by line, until it finds its feet: only the first of each
     // such run says anything useful.

@@ -19,14 +19,12 @@ fn rendered(found: Vec<Diagnostic>) -> String {
 }
 
 fn shipped_robot() -> RobotFile {
-    parse_robot("robot.toml", &read("robot.toml"))
-        .unwrap_or_else(|found| panic!("{}", rendered(found)))
+    parse_robot("robot.toml", &read("robot.toml")).unwrap_or_else(|found| panic!("{}", rendered(found)))
 }
 
 fn shipped_gait(name: &str) -> Gait {
     let path = format!("gaits/{name}.toml");
-    parse_gait(&path, &read(&path), &shipped_robot())
-        .unwrap_or_else(|found| panic!("{}", rendered(found)))
+    parse_gait(&path, &read(&path), &shipped_robot()).unwrap_or_else(|found| panic!("{}", rendered(found)))
 }
 
 #[test]
@@ -34,18 +32,9 @@ fn shipped_gait(name: &str) -> Gait {
 fn the_shipped_robot() {
     let robot = shipped_robot().robot;
     assert_eq!((robot.name.as_str(), robot.gravity), ("quadruped", 9.81));
-    let platform = Platform {
-        name: "platform".into(),
-        mass: 6.65,
-        com: [0.0; 3],
-        inertia: [0.2031, 0.5188, 0.3157],
-    };
+    let platform = Platform { name: "platform".into(), mass: 6.65, com: [0.0; 3], inertia: [0.2031, 0.5188, 0.3157] };
     assert_eq!(robot.platform, platform);
-    let mounts: Vec<_> = robot
-        .legs
-        .iter()
-        .map(|leg| (leg.name.as_str(), leg.mount))
-        .collect();
+    let mounts: Vec<_> = robot.legs.iter().map(|leg| (leg.name.as_str(), leg.mount)).collect();
     assert_eq!(
         mounts,
         [
@@ -64,53 +53,18 @@ fn the_shipped_robot() {
         rotor_inertia: 0.0,
     };
     let segment = |joint: &str, range, actuator, link: &str, mass, com: f64, inertia| Segment {
-        joint: Joint {
-            name: joint.into(),
-            axis: Axis::Pitch,
-            range,
-            actuator,
-        },
-        link: Link {
-            name: link.into(),
-            mass,
-            length: 0.15,
-            com: [0.0, -com, 0.0],
-            inertia: [inertia, 0.0, inertia],
-        },
+        joint: Joint { name: joint.into(), axis: Axis::Pitch, range, actuator },
+        link: Link { name: link.into(), mass, length: 0.15, com: [0.0, -com, 0.0], inertia: [inertia, 0.0, inertia] },
     };
     let chain = [
-        segment(
-            "haunch",
-            [-0.5236, 1.0472],
-            motor("haunch_motor", 5000.0, 3300.0),
-            "thigh",
-            1.6,
-            0.139,
-            0.00215,
-        ),
-        segment(
-            "knee",
-            [-1.7453, -0.2618],
-            motor("knee_motor", 6600.0, 4200.0),
-            "shin",
-            0.2,
-            0.083,
-            0.0017,
-        ),
+        segment("haunch", [-0.5236, 1.0472], motor("haunch_motor", 5000.0, 3300.0), "thigh", 1.6, 0.139, 0.00215),
+        segment("knee", [-1.7453, -0.2618], motor("knee_motor", 6600.0, 4200.0), "shin", 0.2, 0.083, 0.0017),
     ];
     for leg in &robot.legs {
         assert_eq!(leg.chain, chain);
     }
-    let mass: f64 = robot
-        .legs
-        .iter()
-        .flat_map(|leg| &leg.chain)
-        .map(|s| s.link.mass)
-        .sum();
-    assert!(
-        (robot.platform.mass + mass - 13.85).abs() < 1e-12,
-        "§2: 13.85 kg in all"
-    );
+    let mass: f64 = robot.legs.iter().flat_map(|leg| &leg.chain).map(|s| s.link.mass).sum();
+    assert!((robot.platform.mass + mass - 13.85).abs() < 1e-12, "§2: 13.85 kg in all");
 }
 
 #[test]
@@ -134,46 +88,22 @@ fn the_shipped_gaits() {
     let haunch = Unactuated::Joint { leg: 0, joint: 0 };
     assert_eq!(
         shipped_gait("trot"),
-        gait(
-            "trot",
-            [vec![0, 3], vec![1, 2]],
-            Rotation::None,
-            haunch,
-            HalfSteps::Mirrored,
-            2.0
-        )
+        gait("trot", [vec![0, 3], vec![1, 2]], Rotation::None, haunch, HalfSteps::Mirrored, 2.0)
     );
     assert_eq!(
         shipped_gait("amble"),
-        gait(
-            "amble",
-            [vec![1, 3], vec![0, 2]],
-            Rotation::Roll,
-            Unactuated::Platform,
-            HalfSteps::Mirrored,
-            2.0
-        )
+        gait("amble", [vec![1, 3], vec![0, 2]], Rotation::Roll, Unactuated::Platform, HalfSteps::Mirrored, 2.0)
     );
     assert_eq!(
         shipped_gait("curvet"),
-        gait(
-            "curvet",
-            [vec![2, 3], vec![0, 1]],
-            Rotation::Pitch,
-            Unactuated::Platform,
-            HalfSteps::Distinct,
-            0.5
-        )
+        gait("curvet", [vec![2, 3], vec![0, 1]], Rotation::Pitch, Unactuated::Platform, HalfSteps::Distinct, 0.5)
     );
 }
 
 /// `BLESS=1 cargo test` writes them anew.
 #[test]
 fn the_schemas_are_up_to_date() {
-    for (path, schema) in [
-        ("schema/robot.schema.json", robot_schema()),
-        ("schema/gait.schema.json", gait_schema()),
-    ] {
+    for (path, schema) in [("schema/robot.schema.json", robot_schema()), ("schema/gait.schema.json", gait_schema())] {
         let path = model_spec().join(path);
         if std::env::var_os("BLESS").is_some() {
             fs::write(&path, &schema).expect("written");
@@ -187,19 +117,11 @@ fn the_schemas_are_up_to_date() {
 #[test]
 fn what_may_be_left_out() {
     let text = read("robot.toml").replace("axis = \"pitch\"\n", "");
-    let robot =
-        parse_robot("robot.toml", &text).unwrap_or_else(|found| panic!("{}", rendered(found)));
+    let robot = parse_robot("robot.toml", &text).unwrap_or_else(|found| panic!("{}", rendered(found)));
     assert_eq!(robot.robot, shipped_robot().robot);
-    let text = format!(
-        "name = \"slow_trot\"\npolynomial_order = 6\n{}",
-        read("gaits/trot.toml")
-    );
-    let gait = parse_gait("elsewhere/trot.toml", &text, &robot)
-        .unwrap_or_else(|found| panic!("{}", rendered(found)));
-    assert_eq!(
-        (gait.name.as_str(), gait.polynomial_order),
-        ("slow_trot", 6)
-    );
+    let text = format!("name = \"slow_trot\"\npolynomial_order = 6\n{}", read("gaits/trot.toml"));
+    let gait = parse_gait("elsewhere/trot.toml", &text, &robot).unwrap_or_else(|found| panic!("{}", rendered(found)));
+    assert_eq!((gait.name.as_str(), gait.polynomial_order), ("slow_trot", 6));
 }
 
 /// A mass centre as a vector is the same as a distance along the link, which points along -y.
@@ -207,8 +129,7 @@ fn what_may_be_left_out() {
 fn two_ways_to_write_a_mass_centre() {
     let text = read("robot.toml").replace("com = 0.139 ", "com = [0.0, -0.139, 0.0] ");
     assert_ne!(text, read("robot.toml"));
-    let robot =
-        parse_robot("robot.toml", &text).unwrap_or_else(|found| panic!("{}", rendered(found)));
+    let robot = parse_robot("robot.toml", &text).unwrap_or_else(|found| panic!("{}", rendered(found)));
     assert_eq!(robot.robot, shipped_robot().robot);
 }
 
@@ -216,8 +137,7 @@ fn two_ways_to_write_a_mass_centre() {
 #[test]
 fn hostile_inputs() {
     let robot = shipped_robot();
-    let nested =
-        |open: &str, close: &str, n: usize| format!("a = {}{}", open.repeat(n), close.repeat(n));
+    let nested = |open: &str, close: &str, n: usize| format!("a = {}{}", open.repeat(n), close.repeat(n));
     let inputs = [
         String::new(),
         "\u{feff}".into(),
@@ -250,12 +170,7 @@ fn refuse(found: Option<Vec<Diagnostic>>) {
     let found = found.expect("broken input");
     assert!(!found.is_empty(), "refused without a word");
     // Rendering scans the whole text: a few messages of each are enough.
-    assert!(
-        found
-            .iter()
-            .take(5)
-            .all(|d| d.render().starts_with("error[S"))
-    );
+    assert!(found.iter().take(5).all(|d| d.render().starts_with("error[S")));
 }
 
 /// Thousands of small accidents to the shipped files: nothing panics, and whoever is refused is told why.
@@ -291,10 +206,7 @@ fn accidents() {
             }
         }
     }
-    assert!(
-        refused > 300 && accepted > 100,
-        "{refused} refused, {accepted} accepted"
-    );
+    assert!(refused > 300 && accepted > 100, "{refused} refused, {accepted} accepted");
 }
 
 /// A xorshift generator: the same accidents in every run.
@@ -354,11 +266,8 @@ impl Dice {
                 _ => {
                     let at = self.below(lines[i].chars().count() + 1);
                     let word = WORDS[self.below(WORDS.len())];
-                    let (a, b): (Vec<_>, Vec<_>) =
-                        lines[i].chars().enumerate().partition(|(k, _)| *k < at);
-                    let text = |part: Vec<(usize, char)>| {
-                        part.into_iter().map(|(_, c)| c).collect::<String>()
-                    };
+                    let (a, b): (Vec<_>, Vec<_>) = lines[i].chars().enumerate().partition(|(k, _)| *k < at);
+                    let text = |part: Vec<(usize, char)>| part.into_iter().map(|(_, c)| c).collect::<String>();
                     lines[i] = text(a) + word + &text(b);
                 }
             }

@@ -22,19 +22,8 @@ pub(super) struct View<'t> {
 
 impl<'t> View<'t> {
     /// Takes hold of a table; reports its unknown and its missing keys.
-    pub fn open(
-        entries: &'t DeTable<'t>,
-        form: &'static Table,
-        path: String,
-        at: Span,
-        sink: &mut Sink,
-    ) -> Self {
-        let view = Self {
-            entries,
-            form,
-            path,
-            at,
-        };
+    pub fn open(entries: &'t DeTable<'t>, form: &'static Table, path: String, at: Span, sink: &mut Sink) -> Self {
+        let view = Self { entries, form, path, at };
         view.check_keys(sink);
         view
     }
@@ -60,13 +49,7 @@ impl<'t> View<'t> {
             };
             meant.extend(suggestion);
             let title = format!("unknown key `{}`", self.join(key));
-            sink.report(
-                Code::UnknownKey,
-                title,
-                &span,
-                format!("not a key of {}", self.form.noun),
-                help,
-            );
+            sink.report(Code::UnknownKey, title, &span, format!("not a key of {}", self.form.noun), help);
         }
         self.check_missing(&meant, sink);
     }
@@ -77,11 +60,7 @@ impl<'t> View<'t> {
             .form
             .keys
             .iter()
-            .filter(|k| {
-                k.default.is_none()
-                    && !self.entries.contains_key(k.name)
-                    && !meant.contains(&k.name)
-            })
+            .filter(|k| k.default.is_none() && !self.entries.contains_key(k.name) && !meant.contains(&k.name))
             .collect();
         if missing.is_empty() {
             return;
@@ -96,21 +75,14 @@ impl<'t> View<'t> {
         let lines: Vec<_> = missing.iter().map(|k| k.template()).collect();
         let (label, help) = match &lines[..] {
             [line] => ("a key is missing here", format!("add {line}")),
-            _ => (
-                "keys are missing here",
-                format!("add\n{}", lines.join("\n")),
-            ),
+            _ => ("keys are missing here", format!("add\n{}", lines.join("\n"))),
         };
         sink.report(Code::MissingKey, title, &self.at, label, help);
     }
 
     /// All keys with their places, in the order of the file.
     pub fn names(&self) -> Vec<(&'t str, Span)> {
-        let mut names: Vec<_> = self
-            .entries
-            .iter()
-            .map(|(k, _)| (k.get_ref().as_ref(), k.span()))
-            .collect();
+        let mut names: Vec<_> = self.entries.iter().map(|(k, _)| (k.get_ref().as_ref(), k.span())).collect();
         names.sort_by_key(|(_, span)| span.start);
         names
     }
@@ -130,47 +102,30 @@ impl<'t> View<'t> {
             return Vec::new();
         };
         let has = |value: &DeValue<'_>| value.as_table().is_some_and(|t| t.contains_key(inner));
-        entries
-            .iter()
-            .map(|(key, value)| (key.get_ref().to_string(), has(value.get_ref())))
-            .collect()
+        entries.iter().map(|(key, value)| (key.get_ref().to_string(), has(value.get_ref()))).collect()
     }
 
     /// How long the list under a key is, if it is one, and where it stands.
     pub fn list_length(&self, name: &str) -> Option<(usize, Span)> {
         let value = self.entries.get(name)?;
-        value
-            .get_ref()
-            .as_array()
-            .map(|items| (items.len(), value.span()))
+        value.get_ref().as_array().map(|items| (items.len(), value.span()))
     }
 
     /// Dotted path of a key of this table.
     pub fn join(&self, key: &str) -> String {
-        if self.path.is_empty() {
-            key.to_string()
-        } else {
-            format!("{}.{key}", self.path)
-        }
+        if self.path.is_empty() { key.to_string() } else { format!("{}.{key}", self.path) }
     }
 
     /// The key's definition, its value and where that stands.
     pub fn field(&self, name: &str) -> Option<Field<'t>> {
         let key = self.form.keys.iter().find(|k| k.name == name)?;
         let value = self.entries.get(name)?;
-        Some(Field {
-            path: self.join(name),
-            key,
-            value: value.get_ref(),
-            span: value.span(),
-        })
+        Some(Field { path: self.join(name), key, value: value.get_ref(), span: value.span() })
     }
 
     /// Where the key's name stands.
     pub fn key_span(&self, name: &str) -> Span {
-        self.entries
-            .get_key_value(name)
-            .map_or(self.at.clone(), |(key, _)| key.span())
+        self.entries.get_key_value(name).map_or(self.at.clone(), |(key, _)| key.span())
     }
 
     /// A table of a known form.
@@ -179,13 +134,7 @@ impl<'t> View<'t> {
         let (Kind::Table(form), DeValue::Table(entries)) = (&field.key.kind, field.value) else {
             return field.wrong_type(sink);
         };
-        Some(View::open(
-            entries,
-            form,
-            field.path,
-            self.key_span(name),
-            sink,
-        ))
+        Some(View::open(entries, form, field.path, self.key_span(name), sink))
     }
 
     /// The named tables of a map, in the order of the file; `form` picks each one's form.
@@ -204,10 +153,7 @@ impl<'t> View<'t> {
         let views = names
             .into_iter()
             .map(|(key, value)| {
-                let child = At {
-                    value: key.get_ref().to_string(),
-                    span: key.span(),
-                };
+                let child = At { value: key.get_ref().to_string(), span: key.span() };
                 name::check(&child, sink);
                 let path = format!("{}.{}", field.path, child.value);
                 let view = match value.get_ref() {
@@ -218,13 +164,7 @@ impl<'t> View<'t> {
                     other => {
                         let title = format!("`{path}` must be a table, not {}", found(other));
                         let help = format!("write [{path}], and its keys on the lines below");
-                        sink.report(
-                            Code::WrongType,
-                            title,
-                            &value.span(),
-                            "expected a table",
-                            help,
-                        );
+                        sink.report(Code::WrongType, title, &value.span(), "expected a table", help);
                         None
                     }
                 };

@@ -1,0 +1,72 @@
+//! What the tests share: the shipped gaits, and kernels evaluated straight from their expressions.
+#![allow(dead_code, reason = "each test binary uses its part")]
+
+use piaffe_codegen::SpecFile;
+use piaffe_codegen::dynamics::{Kernel, Model, kernels};
+use piaffe_codegen::mechanism::Mechanism;
+use piaffe_codegen::spec::{parse_gait, parse_robot};
+use std::collections::BTreeMap;
+
+pub const GAITS: [&str; 3] = ["trot", "curvet", "amble"];
+
+/// The text of a file of the shipped specification.
+pub fn spec_file(path: &str) -> SpecFile {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../model-spec/");
+    SpecFile { path: path.into(), text: std::fs::read_to_string(format!("{folder}{path}")).unwrap() }
+}
+
+/// The mechanism of a shipped gait.
+pub fn shipped(gait: &str) -> Mechanism {
+    let (robot, gait) = (spec_file("robot.toml"), spec_file(&format!("gaits/{gait}.toml")));
+    let robot = parse_robot(&robot.path, &robot.text).unwrap();
+    let gait = parse_gait(&gait.path, &gait.text, &robot).unwrap();
+    Mechanism::new(&robot.robot, &gait)
+}
+
+/// A mechanism with all its kernels as expressions.
+pub struct Derived {
+    pub model: Model,
+    pub kernels: Vec<Kernel>,
+}
+
+/// Output arrays of a kernel by name.
+pub struct Outputs(Vec<(&'static str, Vec<f64>)>);
+
+impl Derived {
+    pub fn new(mechanism: &Mechanism) -> Derived {
+        let (model, kernels) = kernels(mechanism);
+        Derived { model, kernels }
+    }
+
+    pub fn mechanism(&self) -> &Mechanism {
+        &self.model.mechanism
+    }
+
+    pub fn kernel(&self, name: &str) -> &Kernel {
+        self.kernels.iter().find(|k| k.name == name).unwrap_or_else(|| panic!("no kernel {name}"))
+    }
+
+    /// The kernel's values from its unfactored expressions.
+    pub fn run(&self, name: &str, inputs: &[&[f64]]) -> Outputs {
+        let kernel = self.kernel(name);
+        assert_eq!(kernel.inputs.len(), inputs.len(), "{name}: inputs");
+        let mut values = BTreeMap::new();
+        for (input, numbers) in kernel.inputs.iter().zip(inputs) {
+            assert_eq!(input.symbols.len(), numbers.len(), "{name}: {}", input.name);
+            values.extend(input.symbols.iter().copied().zip(numbers.iter().copied()));
+        }
+        let mut flat = self.model.ring.evaluate_all(kernel.outputs.iter().flat_map(|o| &o.values), &values).into_iter();
+        Outputs(kernel.outputs.iter().map(|o| (o.name, flat.by_ref().take(o.values.len()).collect())).collect())
+    }
+}
+
+impl Outputs {
+    pub fn get(&self, name: &str) -> &[f64] {
+        let found = self.0.iter().find(|(n, _)| *n == name);
+        &found.unwrap_or_else(|| panic!("no output {name}")).1
+    }
+
+    pub fn number(&self, name: &str) -> f64 {
+        self.get(name)[0]
+    }
+}

@@ -1,0 +1,202 @@
+//! Laws of the generated code: no allocation, no panic, no branch on data; the same bytes every time; what
+//! is emitted computes what was derived; and its operation counts cannot creep up unseen.
+
+mod common;
+
+use common::{Derived, GAITS, shipped, spec_file};
+use piaffe_codegen::program::Program;
+use piaffe_codegen::{Generated, SpecFile, generate};
+use std::fmt::Write;
+use syn::visit::{self, Visit};
+
+/// The shipped gaits generated with the specification found under `prefix`.
+fn generated(prefix: &str) -> Vec<Generated> {
+    let under = |path: &str| SpecFile { path: format!("{prefix}{path}"), ..spec_file(path) };
+    let gaits = GAITS.map(|gait| under(&format!("gaits/{gait}.toml")));
+    generate(&under("robot.toml"), &gaits, "crate::model").unwrap()
+}
+
+#[test]
+fn same_bytes_every_time_and_everywhere() {
+    let here = generated("model-spec/");
+    assert_eq!(here, generated("model-spec/"));
+    assert_eq!(here, generated("/some/other/place/"), "paths leak into the code");
+    let elsewhere = std::thread::spawn(|| generated("model-spec/")).join().unwrap();
+    assert_eq!(here, elsewhere);
+}
+
+/// Walks a file; `kernel` inside of a free function, where only straight lines are allowed.
+#[derive(Default)]
+struct Law {
+    kernel: bool,
+    functions: usize,
+    longest: usize,
+    broken: Vec<String>,
+}
+
+/// Names that allocate, panic or leave the safe language.
+const FORBIDDEN: [&str; 12] =
+    ["Vec", "Box", "String", "Rc", "Arc", "alloc", "to_vec", "to_owned", "collect", "unwrap", "expect", "clone"];
+
+impl<'ast> Visit<'ast> for Law {
+    fn visit_item_fn(&mut self, f: &'ast syn::ItemFn) {
+        self.functions += 1;
+        self.kernel = true;
+        visit::visit_item_fn(self, f);
+        self.kernel = false;
+    }
+
+    fn visit_block(&mut self, block: &'ast syn::Block) {
+        let lets = block.stmts.iter().filter(|s| matches!(s, syn::Stmt::Local(_))).count();
+        self.longest = self.longest.max(lets);
+        for (i, statement) in block.stmts.iter().enumerate() {
+            let last = i + 1 == block.stmts.len();
+            let straight = match statement {
+                syn::Stmt::Local(local) => local.init.as_ref().is_some_and(|init| init.diverge.is_none()),
+                syn::Stmt::Expr(_, None) => last,
+                _ => false,
+            };
+            if self.kernel && !straight {
+                self.broken.push(format!("statement {i} of a kernel"));
+            }
+        }
+        visit::visit_block(self, block);
+    }
+
+    fn visit_expr(&mut self, e: &'ast syn::Expr) {
+        use syn::Expr;
+        let straight = match e {
+            Expr::Binary(b) => {
+                matches!(b.op, syn::BinOp::Add(_) | syn::BinOp::Sub(_) | syn::BinOp::Mul(_) | syn::BinOp::Div(_))
+            }
+            Expr::Unary(u) => matches!(u.op, syn::UnOp::Neg(_) | syn::UnOp::Deref(_)),
+            Expr::Call(call) => {
+                let Expr::Path(function) = &*call.func else { return self.broken.push("a call of no name".into()) };
+                let path: Vec<String> = function.path.segments.iter().map(|s| s.ident.to_string()).collect();
+                path == ["math", "sin_cos"]
+            }
+            Expr::Array(_) | Expr::Block(_) | Expr::Lit(_) | Expr::Paren(_) | Expr::Path(_) | Expr::Struct(_) => true,
+            _ => false,
+        };
+        if self.kernel && !straight {
+            self.broken.push("an expression that is no arithmetic, in a kernel".into());
+        }
+        if matches!(e, Expr::Index(_) | Expr::Unsafe(_)) {
+            self.broken.push("indexing or unsafe".into());
+        }
+        visit::visit_expr(self, e);
+    }
+
+    fn visit_ident(&mut self, name: &'ast syn::Ident) {
+        if FORBIDDEN.iter().any(|f| name == f) {
+            self.broken.push(name.to_string());
+        }
+    }
+
+    fn visit_macro(&mut self, m: &'ast syn::Macro) {
+        self.broken.push(format!("macro {}", m.path.segments[0].ident));
+    }
+}
+
+#[test]
+fn kernels_are_straight_lines() {
+    for (name, source) in generated("model-spec/") {
+        if name == "gaits.rs" {
+            continue;
+        }
+        let mut law = Law::default();
+        law.visit_file(&syn::parse_file(&source).unwrap());
+        assert!(law.broken.is_empty(), "{name}: {:?}", law.broken);
+        assert!(law.functions > 30, "{name}: {} functions", law.functions);
+        assert!(law.longest <= 500, "{name}: {} bindings in one scope", law.longest);
+        assert!(!source.contains("unsafe"), "{name}");
+    }
+}
+
+/// The pinned sine and cosine: arithmetic and bits, no branch, no panic.
+#[test]
+fn sine_and_cosine_do_not_branch() {
+    struct Branches(usize);
+    impl<'ast> Visit<'ast> for Branches {
+        fn visit_expr(&mut self, e: &'ast syn::Expr) {
+            use syn::Expr;
+            let branch = matches!(
+                e,
+                Expr::If(_)
+                    | Expr::Match(_)
+                    | Expr::While(_)
+                    | Expr::ForLoop(_)
+                    | Expr::Loop(_)
+                    | Expr::Index(_)
+                    | Expr::Macro(_)
+                    | Expr::Unsafe(_)
+                    | Expr::Try(_)
+            );
+            self.0 += usize::from(branch);
+            visit::visit_expr(self, e);
+        }
+    }
+    let mut branches = Branches(0);
+    branches.visit_file(&syn::parse_file(piaffe_codegen::emit::MATH).unwrap());
+    assert_eq!(branches.0, 0);
+}
+
+/// Factoring does not change values: the program as it is emitted against the expressions as derived.
+#[test]
+fn programs_compute_what_was_derived() {
+    for gait in GAITS {
+        let d = Derived::new(&shipped(gait));
+        let mut number = 0u32;
+        let mut next = || {
+            number += 1;
+            2.0 * (f64::from(number) * 0.618_033_988_749_894_9).fract() - 1.0
+        };
+        let mut worst = 0.0f64;
+        for kernel in &d.kernels {
+            let program = Program::new(&d.model.ring, kernel);
+            let inputs: Vec<Vec<f64>> =
+                kernel.inputs.iter().map(|i| i.symbols.iter().map(|_| next()).collect()).collect();
+            let arrays: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
+            let direct = d.run(&kernel.name, &arrays);
+            for (output, found) in kernel.outputs.iter().zip(program.evaluate(&inputs)) {
+                let expected = direct.get(output.name);
+                let scale = expected.iter().fold(1.0f64, |s, x| s.max(x.abs()));
+                for (f, e) in found.iter().zip(expected) {
+                    let error = (f - e).abs() / scale;
+                    worst = worst.max(error);
+                    assert!(error <= 1e-12, "{gait} {} {}: {f}, expected {e}, scale {scale}", kernel.name, output.name);
+                }
+            }
+        }
+        println!("{gait}: {worst:.1e}");
+    }
+}
+
+/// `BLESS=1 cargo test -p piaffe-codegen --test laws` accepts new counts.
+#[test]
+fn operation_counts_are_pinned() {
+    let mut table = String::from("# gait kernel: additions and multiplications, divisions, pairs of sine and cosine\n");
+    for gait in GAITS {
+        let d = Derived::new(&shipped(gait));
+        for kernel in &d.kernels {
+            let o = Program::new(&d.model.ring, kernel).operations();
+            writeln!(table, "{gait} {}: {} {} {}", kernel.name, o.flops, o.divisions, o.sincos).unwrap();
+            // Where the platform turns with β, the loop over β is a pendulum.
+            if kernel.name.starts_with("late") && !kernel.name.contains("gradient") && gait != "trot" {
+                assert!(o.flops <= 8 && o.sincos == 1 && o.divisions == 0, "{gait} {}: {o:?}", kernel.name);
+            }
+        }
+    }
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/operations.txt");
+    if std::env::var_os("BLESS").is_some() {
+        std::fs::write(path, &table).unwrap();
+    }
+    let expected = std::fs::read_to_string(path).unwrap_or_default();
+    let changed: Vec<String> = table
+        .lines()
+        .zip(expected.lines().chain(std::iter::repeat("")))
+        .filter(|(new, old)| new != old)
+        .map(|(new, old)| format!("{new}   (was {old})"))
+        .collect();
+    assert!(table == expected, "operation counts changed; BLESS=1 accepts them:\n{}", changed.join("\n"));
+}

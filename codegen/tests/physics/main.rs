@@ -1,0 +1,97 @@
+//! The derivation against physics: random robots in random states obey the laws that the equations of
+//! motion, the impacts and their derivatives must obey. Expressions are evaluated as they are, without
+//! the factoring and emission that come after.
+
+#[path = "../common/mod.rs"]
+mod common;
+mod floating;
+mod impact;
+mod jacobians;
+mod numbers;
+mod robots;
+mod state;
+mod support;
+
+use common::Derived;
+use piaffe_codegen::mechanism::Mechanism;
+use piaffe_codegen::spec::Rotation;
+use proptest::prelude::*;
+use proptest::test_runner::{RngSeed, TestRunner};
+use robots::{BUILDS, Build, DRAWS, Draws};
+use state::State;
+
+/// States looked at per robot.
+const STATES: usize = 2;
+
+fn obeys_all_laws(mechanism: &Mechanism, draws: &mut Draws) {
+    let d = Derived::new(mechanism);
+    let turning = (mechanism.rotation == Rotation::None).then(|| {
+        Derived::new(&Mechanism { rotation: Rotation::Pitch, unactuated: mechanism.joints.len(), ..mechanism.clone() })
+    });
+    for _ in 0..STATES {
+        let s = State::random(mechanism, draws);
+        floating::bodies(&d, &s);
+        floating::equations_of_motion(&d, &s);
+        floating::feet(&d, &s);
+        for leg in 0..2 {
+            support::momenta(&d, &s, leg);
+            support::dynamics(&d, turning.as_ref(), &s, leg);
+            impact::one_foot(&d, &s, leg);
+            jacobians::of_support(&d, &s, leg);
+            jacobians::of_inverse_dynamics(&d, &s, leg);
+            jacobians::of_stages(&d, &s, leg);
+            jacobians::of_curvature(&d, &s, draws, leg);
+        }
+        impact::both_feet(&d, &s);
+    }
+}
+
+fn random_robots(build: &Build, cases: u32) {
+    let config = ProptestConfig {
+        cases,
+        max_shrink_iters: 8,
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(2003),
+        ..ProptestConfig::default()
+    };
+    let numbers = prop::collection::vec(0.0..1.0, DRAWS);
+    let result = TestRunner::new(config).run(&numbers, |numbers| {
+        let mut draws = Draws::new(numbers);
+        let mechanism = robots::random(build, &mut draws);
+        obeys_all_laws(&mechanism, &mut draws);
+        Ok(())
+    });
+    if let Err(e) = result {
+        panic!("{e}");
+    }
+}
+
+#[test]
+fn the_shipped_gaits() {
+    for gait in common::GAITS {
+        let numbers = (0..DRAWS).map(|k| (k as f64 * 0.618_033_988_749_895).fract()).collect();
+        obeys_all_laws(&common::shipped(gait), &mut Draws::new(numbers));
+    }
+}
+
+macro_rules! builds {
+    ($($name:ident: $index:literal, $cases:literal;)*) => {
+        $(#[test] fn $name() {
+            let started = std::time::Instant::now();
+            random_robots(&BUILDS[$index].1, $cases);
+            println!("{}: {} cases in {:.1} s", BUILDS[$index].0, $cases, started.elapsed().as_secs_f64());
+        })*
+    };
+}
+
+builds! {
+    trot: 0, 12;
+    trot_with_rotors: 1, 12;
+    level_platform_with_hips_apart: 2, 8;
+    curvet: 3, 10;
+    curvet_on_uneven_legs: 4, 6;
+    amble: 5, 8;
+    amble_on_three_links: 6, 2;
+    amble_with_hips_that_abduct: 7, 1;
+    amble_with_hips_that_turn: 8, 4;
+}
