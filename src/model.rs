@@ -163,13 +163,6 @@ impl Description {
         inner.map(|b| norm(&b.offset)).sum::<f64>() + norm(&leg.foot)
     }
 
-    /// The coordinates of q along which no torque does work: the whole robot turning about the stance foot.
-    pub fn free_direction(&self) -> impl Iterator<Item = usize> + '_ {
-        let rotates = self.rotation != Rotation::None;
-        (0..self.orientations())
-            .filter(move |k| if rotates { *k == self.joints.len() } else { self.hangs_on_platform(*k) })
-    }
-
     /// Whether the joint connects a leg to the platform.
     pub fn hangs_on_platform(&self, joint: usize) -> bool {
         self.bodies.iter().any(|b| b.parent == Some(0) && b.coordinate == Some(joint))
@@ -241,7 +234,8 @@ pub trait Gait: Sync {
     fn impact(&self, leg: usize, q: &[f64], xd: &[f64], out: &mut [f64]);
     /// Impact on the foot of `leg` after support on the other: q̇⁺, impulse, leaving, landing, Jacobian in (q, q̇⁻).
     fn touchdown(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]);
-    /// Gradient and second derivatives (q·q, q·q̇, q·q̈, q̇·q̇) of the weighted sum of an instant's outputs.
+    /// Gradient and second derivatives (q·q, q·q̇, q·q̈, q̇·q̇) of the weighted sum of an instant's outputs;
+    /// `n` weighs the torque of every joint, then the balance of eq. 10.
     fn curvature(
         &self,
         leg: usize,

@@ -74,7 +74,7 @@ impl Workspace {
                 stationarity: Vec::new(),
                 direct: Vec::new(),
                 out: z(3 * nq + 4 * nq * nq),
-                n: z(nq),
+                n: z(d.joints() + 1),
                 v: [z(np), z(np), z(np)],
                 scratch: z(np),
             },
@@ -312,13 +312,14 @@ impl Cycle<'_> {
     ) {
         let nq = q.len();
         let zero = [0.0; 64];
+        let none = &zero[..self.description().joints() + 1];
         let zero = &zero[..nq.min(64)];
         self.gait.curvature(
             p.leg,
             q,
             qd,
             zero,
-            zero,
+            none,
             &zero[..self.description().positions()],
             &[sigma, 0.0, height, 0.0, 0.0, 0.0],
             kernel,
@@ -451,9 +452,7 @@ impl PhaseWork {
         let kappa = t * omega_sigma;
         self.n.fill(0.0);
         self.n[..nj].copy_from_slice(&w[..nj]);
-        for k in d.free_direction() {
-            self.n[k] += balance;
-        }
+        self.n[nj] = balance;
         let (height, velocity) = self.swing_weights(p, node);
         let others = [chi, kappa, height, self.travel_weight(p, node), velocity, w[y.height()]];
         let state = &p.instants.states[node];

@@ -2,8 +2,7 @@
 //!
 //! The stance foot S is at rest, so velocities and accelerations are those relative to it, and its
 //! reaction drops out of the balance along the free direction, in which the robot turns about S as a
-//! whole and no torque does work (a pitching or rolling platform turns with the legs; one that cannot
-//! turn is carried along by both haunches, whose torques cancel by eq. 1):
+//! whole and no torque does work:
 //!
 //! ```text
 //! Σ_bodies  f·v + n·w = 0,    f = m (a − g),  n = I α + ω × I ω,   v, w: partial velocities about S
@@ -23,8 +22,8 @@ const VANISHING: f64 = 1e-9;
 pub struct Support<'a> {
     pub multibody: Multibody<'a>,
     leg: usize,
-    /// Coordinates of q that turn together in the free direction.
-    free: Vec<usize>,
+    /// World axis of the free direction.
+    axis: Vec3,
     loads: Vec<Load>,
     /// Force and moment about the platform's mass centre of each body with all that it carries.
     carried: Vec<(Vec3, Vec3)>,
@@ -42,17 +41,14 @@ struct Load {
 
 impl<'a> Support<'a> {
     pub fn new(description: &'a Description, leg: usize) -> Self {
-        let free = match description.rotation {
-            Rotation::None => (0..description.joints()).filter(|j| description.hangs_on_platform(*j)).collect(),
-            Rotation::Pitch | Rotation::Roll => vec![description.joints()],
-        };
+        let axis = if description.rotation == Rotation::Roll { Vec3::x() } else { Vec3::z() };
         let zero = Vec3::zeros();
         let load = Load { force: zero, moment: zero, force_per_beta: zero, moment_per_beta: zero };
         let length = leg_length(description);
         Support {
             multibody: Multibody::new(description),
             leg,
-            free,
+            axis,
             loads: vec![load; description.bodies.len()],
             carried: vec![(zero, zero); description.bodies.len()],
             smallest_f1: VANISHING * description.total_mass() * length * length,
@@ -61,7 +57,7 @@ impl<'a> Support<'a> {
 
     /// β̈ by eq. 10; also written into `qdd`, whose other entries are Q̈. `None` where f1 vanishes.
     pub fn accelerate(&mut self, q: &[f64], qd: &[f64], qdd: &mut [f64]) -> Option<f64> {
-        let Support { multibody, leg, free, loads, smallest_f1, .. } = self;
+        let Support { multibody, leg, axis, loads, smallest_f1, .. } = self;
         let description = multibody.description();
         let beta = description.unactuated;
         qdd[beta] = 0.0;
@@ -70,7 +66,6 @@ impl<'a> Support<'a> {
         let stance_body = description.legs[*leg].foot_body;
         let of_stance = |k| multibody.partial_velocity(k, stance_body, &stance.position);
         let beta_of_stance = of_stance(beta);
-        let free_of_stance = free.iter().fold(Vec3::zeros(), |sum, k| sum + of_stance(*k));
         let (mut balance, mut f1) = (0.0, 0.0);
         for (b, (body, load)) in description.bodies.iter().zip(loads).enumerate() {
             let com = multibody.com(b);
@@ -83,15 +78,9 @@ impl<'a> Support<'a> {
                 force_per_beta: (partial(beta) - beta_of_stance) * body.mass,
                 moment_per_beta: multibody.spin_momentum(b, &multibody.partial_spin(beta, b)),
             };
-            let velocity = free.iter().fold(-free_of_stance, |sum, k| sum + partial(*k));
-            let spin = free.iter().fold(Vec3::zeros(), |sum, k| sum + multibody.partial_spin(*k, b));
-            balance += load.force.dot(&velocity) + load.moment.dot(&spin);
-            f1 += load.force_per_beta.dot(&velocity) + load.moment_per_beta.dot(&spin);
-        }
-        for &k in &*free {
-            let rotor = description.joints.get(k).map_or(0.0, |joint| joint.rotor_inertia);
-            balance += rotor * qdd[k];
-            f1 += if k == beta { rotor } else { 0.0 };
+            let velocity = axis.cross(&(com.position - stance.position));
+            balance += load.force.dot(&velocity) + load.moment.dot(axis);
+            f1 += load.force_per_beta.dot(&velocity) + load.moment_per_beta.dot(axis);
         }
         if f1.is_nan() || f1.abs() <= *smallest_f1 {
             return None;

@@ -2,7 +2,8 @@
 //!
 //! A weighted sum of generalized forces is the virtual power of the motion's d'Alembert forces in a
 //! virtual velocity: `Σ nₖ Qₖ + φ·F = Σ m (δv + φ)·(a + g) + δω·(Iω̇ + ω×Iω)`, δv linear in n. So one
-//! scalar holds all rows, and it is small.
+//! scalar holds all rows, and it is small. n has a weight for the torque of every joint and one for
+//! the balance of eq. 10: the platform's row where it turns, else a turn of the whole robot.
 
 use super::kernel::Kernel;
 use super::kinematics::{Vec3, add, cross, dot, subtract};
@@ -10,6 +11,7 @@ use super::model::{Model, Origin, scaled};
 use super::solve::Factors;
 use super::stance::Stance;
 use crate::expr::{Poly, Var};
+use crate::spec::Rotation;
 use std::collections::BTreeMap;
 
 /// Kernels of the Hessian for stance on `leg`, and for the impact on `leg`.
@@ -39,12 +41,20 @@ fn virtual_power(model: &mut Model, leg: usize, n: &[Var], phi: &[Var]) -> Poly 
         let velocity = model.rate(centre);
         let mut acceleration = model.rate(&velocity);
         acceleration[1] += &Poly::constant(model.mechanism.gravity);
-        let virtual_velocity = add(&with_rates(model, &velocity, &rename), &translation);
-        power += &dot(&virtual_velocity, &acceleration).scaled(body.mass);
         let spin = model.kinematics.bodies[b].spin.clone();
+        let mut virtual_velocity = add(&with_rates(model, &velocity, &rename), &translation);
+        let mut virtual_spin = with_rates(model, &spin, &rename);
+        if model.mechanism.rotation == Rotation::None
+            && let Some(turn) = n.last()
+        {
+            let turn = Poly::from(*turn);
+            virtual_velocity[0] = &virtual_velocity[0] - &(&turn * &centre[1]);
+            virtual_velocity[1] += &(&turn * &centre[0]);
+            virtual_spin[2] += &turn;
+        }
+        power += &dot(&virtual_velocity, &acceleration).scaled(body.mass);
         let angular = scaled(&spin, &body.inertia);
         let moment = add(&model.rate(&angular), &cross(&spin, &angular));
-        let virtual_spin = with_rates(model, &spin, &rename);
         power += &dot(&virtual_spin, &moment);
     }
     for (k, joint) in model.mechanism.joints.iter().enumerate() {
@@ -55,7 +65,7 @@ fn virtual_power(model: &mut Model, leg: usize, n: &[Var], phi: &[Var]) -> Poly 
 
 fn instant(model: &mut Model, leg: usize) -> Kernel {
     let (q, qd, qdd) = (model.q(0), model.q(1), model.q(2));
-    let n = symbols(model, "n", q.len());
+    let n = symbols(model, "n", model.mechanism.joints.len() + 1);
     let phi = symbols(model, "phi", model.mechanism.positions());
     let others = symbols(model, "w", 6);
     let stance = Stance::new(model, leg);
@@ -75,7 +85,7 @@ fn instant(model: &mut Model, leg: usize) -> Kernel {
     Kernel::new(
         format!("curvature{}", leg + 1),
         "Gradient in (q, q̇, q̈) and second derivatives of the sum of all outputs of an instant, each with its weight: \
-         generalized forces of q (n), reaction (phi), and σ, σ̇, swing foot's height, platform's x, swing foot's \
+         torques of the joints, then the balance (n), reaction (phi), and σ, σ̇, swing foot's height, platform's x, swing foot's \
          vertical velocity, platform's height (others).",
     )
     .input("q", q)

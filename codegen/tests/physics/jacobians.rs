@@ -1,7 +1,7 @@
 //! Every Jacobian kernel against differences of values, and the staged kernels against the direct ones.
 
 use super::common::Derived;
-use super::numbers::{along, assert_close, differences, dot, product, transposed_product};
+use super::numbers::{along, assert_close, difference, differences, dot, product, transposed_product};
 use super::robots::Draws;
 use super::state::State;
 use super::support::{largest, prescribed};
@@ -133,8 +133,15 @@ pub fn of_curvature(d: &Derived, s: &State, draws: &mut Draws, leg: usize) {
     let value = |w: &[f64]| -> Vec<f64> {
         let (q, qd, qdd) = (&w[..n], &w[n..2 * n], &w[2 * n..]);
         let reduced = d.run(&name("reduced"), &[q, qd]);
+        let joints = d.mechanism().joints.len();
         let mut forces = along(&product(reduced.get("a"), qdd), 1.0, reduced.get("h"));
-        forces.truncate(nu.len());
+        forces.truncate(joints);
+        // The balance is dσ/dt less the moment of gravity.
+        let sigma = |t: f64| {
+            let q = along(&along(q, t, qd), 0.5 * t * t, qdd);
+            d.run(&name("momentum"), &[&q, &along(qd, t, qdd)]).get("sigma").to_vec()
+        };
+        forces.push(difference(sigma)[0] - d.run(&name("momentum_terms"), &[q, qd]).number("sigmadot"));
         let terms = d.run(&name("momentum_terms"), &[q, qd]);
         let placement = d.run(&name("placement"), &[q]);
         let velocity = d.run(&name("swing_velocity"), &[q, qd]);
