@@ -111,6 +111,15 @@ pub struct Operations {
 }
 
 impl Description {
+    /// Tells one robot and gait from another: a hash (FNV-1a) of all of its numbers.
+    pub fn fingerprint(&self) -> String {
+        let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+        for byte in format!("{self:?}").bytes() {
+            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+        format!("{hash:016x}")
+    }
+
     /// Number of joints.
     pub fn joints(&self) -> usize {
         self.joints.len()

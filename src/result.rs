@@ -2,7 +2,7 @@
 
 use crate::cycle::Label;
 use crate::model::Gait;
-use crate::motion::{Costs, Criterion, HalfStep};
+use crate::motion::{Costs, Criterion, HalfStep, Motion};
 use crate::search::local::Local;
 use crate::search::multi_start::Found;
 use crate::sqp;
@@ -64,6 +64,8 @@ pub struct GaitResult {
     #[serde(default)]
     pub local_optima: Vec<LocalOptimum>,
     pub search: SearchEntry,
+    /// Of the robot and gait as built: results of another robot are not comparable.
+    pub fingerprint: String,
     /// Wall time of search and receipt.
     pub seconds: f64,
     pub version: String,
@@ -167,9 +169,33 @@ impl GaitResult {
             conflicts: Vec::new(),
             local_optima: Vec::new(),
             search,
+            fingerprint: d.fingerprint(),
             seconds: 0.0,
             version: env!("CARGO_PKG_VERSION").into(),
         }
+    }
+
+    /// Takes over a better optimum that was found elsewhere; tells whether it is better and has a receipt.
+    pub fn improve(&mut self, gait: &dyn Gait, local: &Local) -> bool {
+        if !local.status.is_optimal() {
+            return false;
+        }
+        let mut candidate = GaitResult::empty(gait, self.criterion, self.speed, self.search);
+        candidate.take(gait, local);
+        let Some(cost) = candidate.cost else { return false };
+        if self.cost.is_some_and(|known| cost >= known * (1.0 - 1e-6)) {
+            return false;
+        }
+        candidate.seconds = self.seconds;
+        candidate.local_optima.push(LocalOptimum { cost, durations: candidate.durations.clone(), reached: 1 });
+        candidate.local_optima.append(&mut self.local_optima);
+        *self = candidate;
+        true
+    }
+
+    /// The motion, if there is one.
+    pub fn motion(&self) -> Option<Motion> {
+        self.is_optimal().then(|| Motion { half_steps: self.variables.clone() })
     }
 
     /// Makes `local` the result, with its receipt.

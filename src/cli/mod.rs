@@ -6,6 +6,7 @@ mod main_job;
 mod optimize;
 mod output;
 mod summary;
+mod sweep;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Parser, Subcommand};
@@ -69,6 +70,32 @@ enum Command {
         #[arg(long, value_name = "FILE|-")]
         json: Option<String>,
     },
+    /// Find the optima of gaits over a range of speeds, their greatest speeds and where they overtake each other.
+    ///
+    /// Every point is written as it is found; a sweep that was interrupted goes on where it stopped.
+    #[command(
+        after_help = "Example:\n  piaffe sweep --gait trot --gait amble --criterion all --speeds 0.1..1.6:0.1 --out sweep"
+    )]
+    Sweep {
+        /// May be given several times; all gaits if it is not given.
+        #[arg(long, value_parser = gait_names())]
+        gait: Vec<String>,
+        /// energy, torque or all; may be given several times.
+        #[arg(long, value_parser = PossibleValuesParser::new(["energy", "torque", "all"]), default_value = "all")]
+        criterion: Vec<String>,
+        /// FROM..TO:STEP or a list, m/s.
+        #[arg(long, value_parser = sweep::parse_speeds, default_value = "0.1..1.6:0.1")]
+        speeds: std::vec::Vec<f64>,
+        /// Folder for the results.
+        #[arg(long = "out", value_name = "DIR", default_value = "sweep")]
+        folder: PathBuf,
+        /// Starts at every speed, besides those from the neighbours.
+        #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+        starts: u32,
+        /// Of the random starts.
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+    },
 }
 
 /// Runs the program.
@@ -80,6 +107,14 @@ pub fn run() -> ExitCode {
         Some(Command::Optimize { gait, criterion, speed, seed, starts, json }) => {
             let settings = piaffe::search::multi_start::Settings { starts: starts as usize, seed };
             optimize::run(by_name(&gait), criterion_by_name(&criterion), speed, &settings, json.as_deref())
+        }
+        Some(Command::Sweep { gait, criterion, speeds, folder, starts, seed }) => {
+            let settings = piaffe::search::multi_start::Settings { starts: starts as usize, seed };
+            let gaits: Vec<_> =
+                if gait.is_empty() { GAITS.to_vec() } else { gait.iter().map(|g| by_name(g)).collect() };
+            let wanted = |c: &Criterion| criterion.iter().any(|w| w == "all" || w == c.name());
+            let criteria: Vec<Criterion> = Criterion::ALL.into_iter().filter(wanted).collect();
+            sweep::run(&gaits, &criteria, &speeds, &folder, &settings)
         }
     };
     match outcome {

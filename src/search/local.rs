@@ -7,7 +7,7 @@ use crate::motion::{Costs, Criterion, Motion};
 use crate::sqp::{self, Control, KktResidual, Options, Solution, Status};
 
 /// Violation between nodes (scaled) at which refinement stops.
-const DENSE: f64 = 3e-7;
+const DENSE: f64 = 1e-7;
 const ROUNDS: usize = 8;
 
 /// Where a descent ended.

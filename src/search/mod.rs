@@ -1,5 +1,6 @@
 //! Finding optima: where to start, how to descend, and what to keep.
 
+pub mod atlas;
 pub mod guess;
 pub mod local;
 pub mod multi_start;

@@ -51,11 +51,28 @@ pub fn search(
     settings: &Settings,
     done: &(dyn Fn(usize) + Sync),
 ) -> Found {
-    let locals: Vec<Local> = (0..settings.starts.max(1))
+    search_from(gait, criterion, speed, settings, &[], done)
+}
+
+/// The same, with further starts before those of the settings: optima of neighbouring problems, say.
+pub fn search_from(
+    gait: &dyn Gait,
+    criterion: Criterion,
+    speed: f64,
+    settings: &Settings,
+    neighbours: &[Vec<f64>],
+    done: &(dyn Fn(usize) + Sync),
+) -> Found {
+    let locals: Vec<Local> = (0..neighbours.len() + settings.starts.max(1))
         .into_par_iter()
         .map(|k| {
-            let theta = start(gait, criterion, speed, settings.seed, k);
-            let local = descend(gait, criterion, speed, &theta, &mut |_| Control::Continue);
+            let local = match neighbours.get(k) {
+                Some(theta) => descend(gait, criterion, speed, theta, &mut |_| Control::Continue),
+                None => {
+                    let theta = start(gait, criterion, speed, settings.seed, k - neighbours.len());
+                    descend(gait, criterion, speed, &theta, &mut |_| Control::Continue)
+                }
+            };
             done(k);
             local
         })

@@ -67,10 +67,14 @@ pub fn dips(probe: &mut Cycle, theta: &[f64]) -> Result<Dips, Undefined> {
             let values: Vec<f64> = order.iter().map(|k| probe.path_value(phase, *k, constraint)).collect();
             for k in 1..s.len() - 1 {
                 result.violation = result.violation.max(-values[k]);
-                if values[k] < NEAR && values[k] <= values[k - 1] && values[k] < values[k + 1] {
+                // A dip inside the first or last interval shows in the parabola only.
+                let lowest = values[k] <= values[k - 1] && values[k] < values[k + 1];
+                if values[k] < NEAR && (lowest || k == 1 || k == s.len() - 2) {
                     let (at, value) = vertex(&s[k - 1..=k + 1], &values[k - 1..=k + 1]);
-                    result.violation = result.violation.max(-value);
-                    found.push((value, at));
+                    if at > s[k - 1] && at < s[k + 1] {
+                        result.violation = result.violation.max(-value);
+                        found.push((value, at));
+                    }
                 }
             }
         }

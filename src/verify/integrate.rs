@@ -1,7 +1,7 @@
 //! Adaptive integration of ẏ = f(t, y) to high order, with dense output.
 //!
 //! Dormand and Prince's method of order 8 with the step control and the interpolant of DOP853 (see
-//! [`tableau`](super::tableau)). A right-hand side that is not defined, or a result that is not
+//! `tableau.rs`). A right-hand side that is not defined, or a result that is not
 //! finite, counts as too large a step; steps that get too small or too many end the integration.
 
 use super::tableau::{A, ALL_STAGES, C, D, E3, E5, Row, STAGES};

@@ -7,9 +7,9 @@
 //! 2. β(t) by adaptive integration of order 8 ([`integrate`], eq. 20–22) of the balance of all bodies
 //!    about the stance foot ([`support`], eq. 10), from 3-D Newton–Euler dynamics in numbers
 //!    ([`multibody`], eq. 4, 5);
-//! 3. every constraint of §4.2 and §6.1 on a dense grid ([`grid`], [`constraint`]), and both criteria
+//! 3. every constraint of §4.2 and §6.1 on a dense grid (`grid.rs`, [`constraint`]), and both criteria
 //!    (eq. 13, 14) by quadrature that respects changes of sign ([`quadrature`]);
-//! 4. the impacts ([`impact`], eq. 12) and how nearly the cycle closes ([`cycle`], eq. 16–19, 23, 24).
+//! 4. the impacts ([`impact`], eq. 12) and how nearly the cycle closes (`cycle.rs`, eq. 16–19, 23, 24).
 //!
 //! Sines and cosines come from the `libm` crate and everything else is arithmetic of IEEE 754, in a
 //! fixed order: the same motion gets the same receipt, to the bit, on every machine.
