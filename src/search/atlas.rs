@@ -115,11 +115,11 @@ pub fn maximum_speed(gait: &dyn Gait, results: &[&GaitResult], settings: &Settin
     let mut conflicts: Vec<Conflict> = Vec::new();
     let mut bad = None;
     // Feasibility does not depend on the criterion; the smooth one is quicker.
-    let attempt = |speed: f64, from: &[f64]| -> Result<Local, Local> {
+    let attempt = |speed: f64, from: &[f64]| -> Local {
         let mut local = descend(gait, Criterion::Torque, speed, from, &mut |_| Control::Continue);
         for k in 0..settings.starts {
             if local.status.is_optimal() {
-                return Ok(local);
+                break;
             }
             let theta = start(gait, Criterion::Torque, speed, settings.seed, k);
             let other = descend(gait, Criterion::Torque, speed, &theta, &mut |_| Control::Continue);
@@ -127,22 +127,20 @@ pub fn maximum_speed(gait: &dyn Gait, results: &[&GaitResult], settings: &Settin
                 local = other;
             }
         }
-        if local.status.is_optimal() { Ok(local) } else { Err(local) }
+        local
     };
     while bad.is_none_or(|b| b - good > BISECTION) {
         let speed = bad.map_or(good + STEP, |b| 0.5 * (good + b));
         if speed > FASTEST {
             return None;
         }
-        match attempt(speed, &from) {
-            Ok(local) => {
-                good = speed;
-                from = local.theta;
-            }
-            Err(local) => {
-                bad = Some(speed);
-                conflicts = local.conflicts;
-            }
+        let local = attempt(speed, &from);
+        if local.status.is_optimal() {
+            good = speed;
+            from = local.theta;
+        } else {
+            bad = Some(speed);
+            conflicts = local.conflicts;
         }
     }
     // What the speed itself and the cycle demand is the question; the answer is what stands against it.
