@@ -5,11 +5,14 @@ use super::local::{Local, descend};
 use crate::cycle::Cycle;
 use crate::model::Gait;
 use crate::motion::Criterion;
-use crate::sqp::Control;
+use crate::sqp::{Control, Problem, Values};
 use rayon::prelude::*;
 
 /// Costs within this share of each other belong to one optimum, if the motions agree too.
 const SAME_COST: f64 = 1e-5;
+
+/// Walks drawn for each random start.
+const DRAWS: usize = 6;
 
 /// How widely to search.
 #[derive(Clone, Debug)]
@@ -80,17 +83,23 @@ pub fn search_from(
     collect(criterion, locals)
 }
 
-/// The k-th start of a seed.
+/// The k-th start of a seed: the default walk, then random ones.
 pub fn start(gait: &dyn Gait, criterion: Criterion, speed: f64, seed: u64, k: usize) -> Vec<f64> {
     let d = gait.description();
-    let plan = if k == 0 {
-        Plan::default_for(d)
-    } else {
-        // Streams of neighbouring seeds must not overlap: mix seed and number.
-        let mut rng = fastrand::Rng::with_seed(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ k as u64);
-        Plan::random(d, &mut rng)
-    };
-    Cycle::new(gait, criterion, speed).theta(&walk(gait, &plan, speed))
+    let mut cycle = Cycle::new(gait, criterion, speed);
+    if k == 0 {
+        return cycle.theta(&walk(gait, &Plan::default_for(d), speed));
+    }
+    // Streams of neighbouring seeds must not overlap: mix seed and number.
+    let mut rng = fastrand::Rng::with_seed(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ k as u64);
+    // Drawing is cheap beside descending: of a few walks, the one that comes closest to satisfying the constraints.
+    let mut values = Values::zeros(cycle.equalities(), cycle.inequalities());
+    let drawn = (0..DRAWS).map(|_| {
+        let theta = cycle.theta(&walk(gait, &Plan::random(d, &mut rng), speed));
+        let violation = cycle.evaluate(&theta, &mut values).map_or(f64::INFINITY, |()| values.violation());
+        (violation, theta)
+    });
+    drawn.min_by(|a, b| a.0.total_cmp(&b.0)).map_or_else(Vec::new, |(_, theta)| theta)
 }
 
 fn collect(criterion: Criterion, locals: Vec<Local>) -> Found {
