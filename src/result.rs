@@ -60,6 +60,8 @@ pub struct GaitResult {
     /// For an infeasible problem: the constraints that conflict, worst first.
     #[serde(default)]
     pub conflicts: Vec<ConflictEntry>,
+    /// For an infeasible problem: the nearest speed with a feasible motion, if one was found, m/s.
+    pub nearest_speed: Option<f64>,
     /// All distinct local optima found, best first.
     #[serde(default)]
     pub local_optima: Vec<LocalOptimum>,
@@ -167,6 +169,7 @@ impl GaitResult {
             receipt: None,
             peaks: Vec::new(),
             conflicts: Vec::new(),
+            nearest_speed: None,
             local_optima: Vec::new(),
             search,
             fingerprint: d.fingerprint(),

@@ -113,6 +113,8 @@ fn an_infeasible_speed_is_said_and_fails() {
     let result: Value = serde_json::from_slice(&out.stdout).unwrap();
     assert_eq!(result["status"], "infeasible");
     assert!(result["cost"].is_null() && !result["conflicts"].as_array().unwrap().is_empty());
+    let nearest = result["nearest_speed"].as_f64().unwrap();
+    assert!((1.0..1.3).contains(&nearest), "{nearest}");
 }
 
 #[test]

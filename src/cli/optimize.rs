@@ -4,7 +4,8 @@ use super::{output, summary};
 use indicatif::{ProgressBar, ProgressStyle};
 use piaffe::model::Gait;
 use piaffe::motion::Criterion;
-use piaffe::result::GaitResult;
+use piaffe::result::{GaitResult, Status};
+use piaffe::search::atlas::nearest_speed;
 use piaffe::search::multi_start::{Settings, search};
 use std::time::Instant;
 
@@ -16,7 +17,11 @@ pub fn run(
     json: Option<&str>,
 ) -> anyhow::Result<bool> {
     let bar = progress(settings.starts as u64, "starts");
-    let result = solve(gait, criterion, speed, settings, &bar);
+    let mut result = solve(gait, criterion, speed, settings, &bar);
+    if result.status == Status::Infeasible {
+        bar.set_message("nearest speed that works");
+        result.nearest_speed = nearest_speed(gait, speed, settings);
+    }
     bar.finish_and_clear();
     if json != Some("-") {
         output::quiet_when_closed(summary::print(gait.description(), &result))?;

@@ -25,7 +25,10 @@ pub fn print(description: &Description, r: &GaitResult) -> std::io::Result<()> {
         }
     }
     if r.status == Status::Infeasible {
-        writeln!(out, "  Try another speed, or loosen one of these limits in the specification.")?;
+        match r.nearest_speed {
+            Some(v) => writeln!(out, "  The nearest speed that works is {v:.3} m/s.")?,
+            None => writeln!(out, "  No speed nearby works either: loosen one of these limits in the specification.")?,
+        }
     }
     if let (Some(cost), Some(costs)) = (r.cost, r.costs) {
         writeln!(out, "  cost            {cost:.4} {}", r.criterion.unit())?;

@@ -114,27 +114,12 @@ pub fn maximum_speed(gait: &dyn Gait, results: &[&GaitResult], settings: &Settin
     let mut from = theta(gait, fastest)?;
     let mut conflicts: Vec<Conflict> = Vec::new();
     let mut bad = None;
-    // Feasibility does not depend on the criterion; the smooth one is quicker.
-    let attempt = |speed: f64, from: &[f64]| -> Local {
-        let mut local = descend(gait, Criterion::Torque, speed, from, &mut |_| Control::Continue);
-        for k in 0..settings.starts {
-            if local.status.is_optimal() {
-                break;
-            }
-            let theta = start(gait, Criterion::Torque, speed, settings.seed, k);
-            let other = descend(gait, Criterion::Torque, speed, &theta, &mut |_| Control::Continue);
-            if other.status.is_optimal() || other.kkt.violation < local.kkt.violation {
-                local = other;
-            }
-        }
-        local
-    };
     while bad.is_none_or(|b| b - good > BISECTION) {
         let speed = bad.map_or(good + STEP, |b| 0.5 * (good + b));
         if speed > FASTEST {
             return None;
         }
-        let local = attempt(speed, &from);
+        let local = attempt(gait, speed, Some(&from), settings);
         if local.status.is_optimal() {
             good = speed;
             from = local.theta;
@@ -149,6 +134,52 @@ pub fn maximum_speed(gait: &dyn Gait, results: &[&GaitResult], settings: &Settin
     conflicts.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     let ended_by = conflicts.iter().map(|c| format!("{} (half step {})", c.label.name, c.label.half_step)).collect();
     Some(MaximumSpeed { gait: gait.description().gait.into(), speed: good, ended_by })
+}
+
+/// A feasible motion at a speed, or the attempt that came closest.
+///
+/// Feasibility does not depend on the criterion; the smooth one is quicker.
+fn attempt(gait: &dyn Gait, speed: f64, from: Option<&[f64]>, settings: &Settings) -> Local {
+    let of = |theta: &[f64]| descend(gait, Criterion::Torque, speed, theta, &mut |_| Control::Continue);
+    let mut best = from.map(of);
+    for k in 0..settings.starts {
+        if best.as_ref().is_some_and(|b| b.status.is_optimal()) {
+            break;
+        }
+        let other = of(&start(gait, Criterion::Torque, speed, settings.seed, k));
+        let better = |b: &Local| other.status.is_optimal() || other.kkt.violation < b.kkt.violation;
+        if best.as_ref().is_none_or(better) {
+            best = Some(other);
+        }
+    }
+    best.unwrap_or_else(|| of(&start(gait, Criterion::Torque, speed, settings.seed, 0)))
+}
+
+/// For a speed without a feasible motion the nearest one with one, to 0.002 m/s, as far as local
+/// searches can tell. Tries speeds ever further off on both sides, then bisects.
+pub fn nearest_speed(gait: &dyn Gait, speed: f64, settings: &Settings) -> Option<f64> {
+    let settings = Settings { starts: settings.starts.min(3), ..settings.clone() };
+    let feasible = |v: f64| attempt(gait, v, None, &settings).status.is_optimal();
+    let (mut slower, mut faster) = (speed, speed);
+    for _ in 0..12 {
+        for (candidate, last) in [(0.8 * slower, slower), (1.25 * faster, faster)] {
+            if candidate > FASTEST || !feasible(candidate) {
+                continue;
+            }
+            let (mut good, mut bad) = (candidate, last);
+            while (bad - good).abs() > BISECTION {
+                let middle = 0.5 * (good + bad);
+                if feasible(middle) {
+                    good = middle;
+                } else {
+                    bad = middle;
+                }
+            }
+            return Some(good);
+        }
+        (slower, faster) = (0.8 * slower, 1.25 * faster);
+    }
+    None
 }
 
 /// Where the cheaper of two gaits changes.
