@@ -40,16 +40,15 @@ struct Folder {
     failure: Mutex<Option<anyhow::Error>>,
 }
 
-impl Folder {
-    fn file(&self, gait: &str, criterion: Criterion, speed: f64) -> String {
-        format!("{gait}-{}-{speed:.4}.json", criterion.name())
-    }
+/// Name of a point's file.
+fn file(gait: &str, criterion: Criterion, speed: f64) -> String {
+    format!("{gait}-{}-{speed:.4}.json", criterion.name())
 }
 
 impl Journal for Folder {
     fn known(&self, gait: &dyn Gait, criterion: Criterion, speed: f64) -> Option<GaitResult> {
         let d = gait.description();
-        let path = self.path.join(self.file(d.gait, criterion, speed));
+        let path = self.path.join(file(d.gait, criterion, speed));
         let result: GaitResult = path.exists().then(|| input::read_json(&path.to_string_lossy()).ok()).flatten()?;
         // Another robot, version or search: to be done again.
         let same = result.fingerprint == d.fingerprint()
@@ -61,9 +60,9 @@ impl Journal for Folder {
     }
 
     fn record(&self, result: &GaitResult) {
-        let path = self.path.join(self.file(&result.gait, result.criterion, result.speed));
-        if let Err(error) = output::write_json(&path, result) {
-            self.failure.lock().map(|mut f| f.get_or_insert(error).to_string()).ok();
+        let path = self.path.join(file(&result.gait, result.criterion, result.speed));
+        if let (Err(error), Ok(mut failure)) = (output::write_json(&path, result), self.failure.lock()) {
+            failure.get_or_insert(error);
         }
     }
 
@@ -121,7 +120,7 @@ pub fn run(
             status: r.status,
             cost: r.cost,
             durations: r.durations.clone(),
-            file: format!("{}-{}-{:.4}.json", r.gait, r.criterion.name(), r.speed),
+            file: file(&r.gait, r.criterion, r.speed),
         })
         .collect();
     output::write_json(&folder.join("sweep.json"), &Summary { points, maximum_speeds, crossovers: crossings })?;

@@ -9,6 +9,7 @@
 //! the initial velocities and σ as functions of Θ through the impact (kernel `touchdown_curvature`).
 
 use super::phase::Phase;
+use super::problem::CLOSURE;
 use super::{Cycle, Variables, renamed};
 use crate::instant::direction;
 use crate::lgl::NODES;
@@ -18,10 +19,8 @@ use crate::stance::Stance;
 /// Share of an element per change of power over slope, beyond which a kink's curvature is averaged.
 const REACH: f64 = 1.0;
 
-/// Equalities of each half step, in the order of `problem`.
-const CLOSURE: usize = 3;
-
 /// Memory of the computation, allocated once.
+#[derive(Default)]
 pub struct Workspace {
     /// A row of local parameters.
     pub local: Vec<f64>,
@@ -37,9 +36,12 @@ pub struct Workspace {
     outputs: Vec<f64>,
     kernel: Vec<f64>,
     rows: Vec<f64>,
+    /// Weights that are not there: as many as any kernel input needs.
+    zeros: Vec<f64>,
 }
 
 /// Multipliers and second-order terms of one half step.
+#[derive(Default)]
 struct PhaseWork {
     /// Weights of all quantities, a row per node: ∂L/∂quantity at fixed Θ.
     weights: Vec<f64>,
@@ -87,6 +89,7 @@ impl Workspace {
             outputs: z(nc + 2),
             kernel: z(3 * nq + 4 * nq * nq),
             rows: z(2 * nq * n),
+            zeros: z(nq + d.joints() + nc + 1),
         }
     }
 }
@@ -96,7 +99,7 @@ impl Cycle<'_> {
     pub(super) fn lagrangian_hessian(&mut self, lambda: &[f64], mu: &[f64], hessian: &mut [f64]) {
         let n = self.variables.total();
         hessian.fill(0.0);
-        let mut work = std::mem::replace(&mut self.workspace, Workspace::empty());
+        let mut work = std::mem::take(&mut self.workspace);
         for k in 0..self.phases.len() {
             self.weigh(k, lambda, mu, &mut work.phase);
             let p = &self.phases[k];
@@ -169,7 +172,6 @@ impl Cycle<'_> {
     fn instant_terms(&self, k: usize, mu: &[f64], work: &mut Workspace) {
         let d = self.description();
         let p = &self.phases[k];
-        let (np, count) = (p.layout.len(), p.instants.quantities.len());
         let t = p.duration();
         let h = &mut work.h_local;
         for node in 0..p.mesh.nodes.len() {
@@ -200,7 +202,8 @@ impl Cycle<'_> {
             // A root that the next step moves out of sight bends the cost less than its slope says:
             // the last step tells how far the power at the root may change.
             let change = dot(g, &work.reach);
-            let weight = kink.weight / (1.0 + (REACH * change / kink.slope).powi(2)).sqrt();
+            let moved = REACH * change / kink.slope;
+            let weight = kink.weight / (1.0 + moved * moved).sqrt();
             rank_two(h, g, g, 0.5 * weight * scale);
         }
         self.weighted_path_rows(mu, |phase, node, constraint, multiplier| {
@@ -210,19 +213,27 @@ impl Cycle<'_> {
                 });
             }
         });
-        debug_assert!(count > 0 && h.len() == np * np);
     }
 
     /// Curvature of the initial state as a function of Θ, and of what is imposed at the end.
     fn start_terms(&self, k: usize, lambda: &[f64], mu: &[f64], work: &mut Workspace, hessian: &mut [f64]) {
         let d = self.description();
-        let (nq, nc, n) = (d.orientations(), d.positions(), self.variables.total());
+        let (nq, n) = (d.orientations(), self.variables.total());
         let p = &self.phases[k];
         let layout = p.layout;
         let sigma_weight = work.phase.gradient[layout.sigma()];
 
         // σ(q, q̇) at the start.
-        self.sigma_curvature(p, &p.q_start, &p.qd_start, sigma_weight, 0.0, &mut work.kernel, &mut work.small);
+        self.sigma_curvature(
+            p,
+            &p.q_start,
+            &p.qd_start,
+            sigma_weight,
+            0.0,
+            &work.zeros,
+            &mut work.kernel,
+            &mut work.small,
+        );
         congruence(&work.small, &p.start_by_theta, n, &mut work.rows, hessian);
 
         // The touchdown that leads here, at the end of the half step before.
@@ -291,11 +302,11 @@ impl Cycle<'_> {
             &p.qd_end,
             closure,
             -touchdown / d.leg_length(),
+            &work.zeros,
             &mut work.kernel,
             &mut work.small,
         );
         self.scatter(k, &work.small, hessian);
-        debug_assert_eq!(work.outputs.len(), nc + 2);
     }
 
     /// Second derivatives in (q, q̇) of `sigma · σ + height · swing foot's height`.
@@ -307,20 +318,19 @@ impl Cycle<'_> {
         qd: &[f64],
         sigma: f64,
         height: f64,
+        zeros: &[f64],
         kernel: &mut [f64],
         small: &mut [f64],
     ) {
-        let nq = q.len();
-        let zero = [0.0; 64];
-        let none = &zero[..self.description().joints() + 1];
-        let zero = &zero[..nq.min(64)];
+        let (d, nq) = (self.description(), q.len());
+        let zero = |count: usize| &zeros[..count];
         self.gait.curvature(
             p.leg,
             q,
             qd,
-            zero,
-            none,
-            &zero[..self.description().positions()],
+            zero(nq),
+            zero(d.joints() + 1),
+            zero(d.positions()),
             &[sigma, 0.0, height, 0.0, 0.0, 0.0],
             kernel,
         );
@@ -589,36 +599,6 @@ impl PhaseWork {
             }
         }
         cross_duration(h, &self.scratch, 1.0 / travel, p.layout.duration());
-    }
-}
-
-impl Workspace {
-    fn empty() -> Workspace {
-        let phase = PhaseWork {
-            weights: Vec::new(),
-            gradient: Vec::new(),
-            travel: 0.0,
-            omega: Vec::new(),
-            stationarity: Vec::new(),
-            direct: Vec::new(),
-            out: Vec::new(),
-            n: Vec::new(),
-            v: [Vec::new(), Vec::new(), Vec::new()],
-            scratch: Vec::new(),
-        };
-        Workspace {
-            local: Vec::new(),
-            phase,
-            reach: Vec::new(),
-            h_local: Vec::new(),
-            half: Vec::new(),
-            touchdown: Vec::new(),
-            small: Vec::new(),
-            xi: Vec::new(),
-            outputs: Vec::new(),
-            kernel: Vec::new(),
-            rows: Vec::new(),
-        }
     }
 }
 

@@ -10,7 +10,7 @@ use crate::model::Description;
 use crate::sqp::{self, Problem, Undefined, Values};
 
 /// Equalities of each half step: closure of β and of σ, touchdown.
-const CLOSURE: usize = 3;
+pub const CLOSURE: usize = 3;
 
 /// Number of equalities: those of each half step, and the mean speed.
 pub fn equalities(d: &Description) -> usize {

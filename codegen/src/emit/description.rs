@@ -1,6 +1,6 @@
 //! The mechanism's numbers as a static value of the runtime's types.
 
-use super::function::{Function, base_name, ident};
+use super::function::{Function, ident};
 use crate::mechanism::Mechanism;
 use crate::spec::{HalfSteps, Rotation};
 use proc_macro2::{Literal, TokenStream};
@@ -57,7 +57,6 @@ pub fn description(m: &Mechanism, functions: &[Function], runtime: &TokenStream)
     let operations = functions.iter().map(|f| {
         let (name, o) = (&f.kernel.name, f.program.operations());
         let (flops, divisions, sincos) = (o.flops, o.divisions, o.sincos);
-        debug_assert!(!base_name(name).0.is_empty());
         quote!(#runtime::Operations { kernel: #name, flops: #flops, divisions: #divisions, sincos: #sincos })
     });
     let (gait, robot) = (&m.gait, &m.robot);
