@@ -8,7 +8,7 @@ use crate::sqp::{self, Control, KktResidual, Options, Solution, Status};
 
 /// Violation between nodes (scaled) at which refinement stops.
 const DENSE: f64 = 1e-7;
-const ROUNDS: usize = 8;
+const ROUNDS: usize = 20;
 
 /// Where a descent ended.
 #[derive(Clone, Debug)]
