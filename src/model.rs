@@ -5,6 +5,8 @@
 //! kernel as a function over arrays, with its documentation and operation counts. Coordinates,
 //! frames and units: X = [p, q], world axes Xf forward, Yf up, Zf to the right; SI.
 
+use std::borrow::Cow;
+
 /// What a gait is made of, in numbers.
 #[derive(Clone, Debug)]
 pub struct Description {
@@ -17,8 +19,8 @@ pub struct Description {
     pub rotation: Rotation,
     pub half_steps: HalfSteps,
     /// Parents precede children; body 0 is the platform.
-    pub bodies: &'static [Body],
-    pub joints: &'static [Joint],
+    pub bodies: Cow<'static, [Body]>,
+    pub joints: Cow<'static, [Joint]>,
     pub legs: [Leg; 2],
     /// Index of β in q.
     pub unactuated: usize,
@@ -192,7 +194,7 @@ impl Description {
 /// Generated dynamics of one gait. `leg` is 0 or 1: the leg in support, or the leg named.
 #[allow(clippy::too_many_arguments)]
 pub trait Gait: Sync {
-    fn description(&self) -> &'static Description;
+    fn description(&self) -> &Description;
 
     /// A(q): n × n.
     fn inertia(&self, q: &[f64], out: &mut [f64]);

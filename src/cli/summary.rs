@@ -44,7 +44,7 @@ pub fn print(description: &Description, r: &GaitResult) -> std::io::Result<()> {
     if !r.peaks.is_empty() {
         writeln!(out, "  peaks at the joints     torque, N·m        speed, rad/s (motor, rev/min)   envelope margin")?;
     }
-    for (peak, joint) in r.peaks.iter().zip(description.joints) {
+    for (peak, joint) in r.peaks.iter().zip(description.joints.iter()) {
         writeln!(
             out,
             "    {:<16} {:8.3} of {:<6.1} {:10.3} of {:<6.2} ({:4.0} of {:4.0}) {:14.1} %",

@@ -150,7 +150,7 @@ impl<'a> Cycle<'a> {
         }
     }
 
-    pub fn description(&self) -> &'static Description {
+    pub fn description(&self) -> &'a Description {
         self.gait.description()
     }
 

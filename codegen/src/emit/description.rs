@@ -69,7 +69,7 @@ pub fn description(m: &Mechanism, functions: &[Function], runtime: &TokenStream)
         #runtime::Description {
             gait: #gait, robot: #robot, gravity: #gravity, lateral: #lateral,
             rotation: #runtime::Rotation::#rotation, half_steps: #runtime::HalfSteps::#half_steps,
-            bodies: &[#(#bodies),*], joints: &[#(#joints),*], legs: [#(#legs),*],
+            bodies: std::borrow::Cow::Borrowed(&[#(#bodies),*]), joints: std::borrow::Cow::Borrowed(&[#(#joints),*]), legs: [#(#legs),*],
             unactuated: #unactuated, polynomial_order: #order, early: [#(#early),*],
             limits: #runtime::Limits { friction: #friction, min_vertical_force: #force,
                 swing_clearance: #clearance, half_step_duration: #duration },

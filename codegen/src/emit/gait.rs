@@ -40,7 +40,7 @@ pub fn gait_source(mechanism: &Mechanism, runtime: &str, origin: &str) -> Result
         #[doc = " What the gait is made of, in numbers."]
         pub static DESCRIPTION: #runtime::Description = #description;
         impl #runtime::Gait for #name {
-            fn description(&self) -> &'static #runtime::Description { &DESCRIPTION }
+            fn description(&self) -> &#runtime::Description { &DESCRIPTION }
             #methods
         }
     };
