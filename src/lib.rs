@@ -16,6 +16,7 @@ pub mod stance;
 pub mod states;
 pub mod trajectory;
 pub mod verify;
+pub mod walk;
 
 /// Generated dynamics: one module per gait of `model-spec`.
 pub mod gaits {

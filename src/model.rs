@@ -84,11 +84,22 @@ pub struct Joint {
 /// A virtual leg.
 #[derive(Clone, Debug)]
 pub struct Leg {
+    /// The real legs that it stands for, all of one build: of masses, inertias, torques and reactions each has an
+    /// equal share.
+    pub members: &'static [Member],
     pub first_joint: usize,
     pub end_joint: usize,
     pub foot_body: usize,
     /// Foot from the joint of `foot_body`, m.
     pub foot: [f64; 3],
+}
+
+/// A real leg.
+#[derive(Clone, Debug)]
+pub struct Member {
+    pub name: &'static str,
+    /// Its first joint from the platform's mass centre, in the platform's axes, m.
+    pub mount: [f64; 3],
 }
 
 /// Limits of §6.1.

@@ -11,6 +11,7 @@
 mod hessian;
 mod phase;
 mod problem;
+mod sample;
 
 use crate::constraints::{ImpactConstraints, PathConstraint, path_constraints};
 use crate::cost::{Integral, integrate};
@@ -19,6 +20,7 @@ use crate::motion::{Costs, Criterion, HalfStep, Motion};
 use crate::stance::Undefined;
 use hessian::Workspace;
 use phase::Phase;
+pub use sample::Sample;
 
 /// Elements per half step: 4 × this + 1 nodes.
 pub const ELEMENTS: usize = 8;

@@ -39,7 +39,11 @@ pub fn description(m: &Mechanism, functions: &[Function], runtime: &TokenStream)
     });
     let legs = m.legs.iter().map(|l| {
         let (start, end, body, foot) = (l.joints.start, l.joints.end, l.foot_body, floats(&l.foot));
-        quote!(#runtime::Leg { first_joint: #start, end_joint: #end, foot_body: #body, foot: #foot })
+        let members = l.members.iter().map(|r| {
+            let (name, mount) = (&r.name, floats(&r.mount));
+            quote!(#runtime::Member { name: #name, mount: #mount })
+        });
+        quote!(#runtime::Leg { members: &[#(#members),*], first_joint: #start, end_joint: #end, foot_body: #body, foot: #foot })
     });
     let rotation = ident(match m.rotation {
         Rotation::None => "None",

@@ -3,7 +3,7 @@
 //! This is where virtual legs come from (§2.1): the real legs that move together become one leg
 //! whose hip is the mean of their mounts and whose masses and inertias are their sums.
 
-use crate::spec::{Axis, Gait, HalfSteps, Joint, Limits, Robot, Rotation, Unactuated};
+use crate::spec::{Axis, Gait, HalfSteps, Joint, Leg, Limits, Robot, Rotation, Unactuated};
 
 /// The tree of rigid bodies of one gait's model; SI units, body axes x forward, y up, z right.
 #[derive(Clone, Debug)]
@@ -60,10 +60,19 @@ pub struct Actuated {
 /// A virtual leg: which joints it has and where its foot is.
 #[derive(Clone, Debug)]
 pub struct VirtualLeg {
+    /// The real legs that it stands for.
+    pub members: Vec<Member>,
     pub joints: std::ops::Range<usize>,
     pub foot_body: usize,
     /// Foot from the joint of `foot_body`, in its axes, m.
     pub foot: [f64; 3],
+}
+
+/// A real leg: its name, and its first joint from the platform's mass centre, m.
+#[derive(Clone, Debug)]
+pub struct Member {
+    pub name: String,
+    pub mount: [f64; 3],
 }
 
 impl Mechanism {
@@ -82,6 +91,7 @@ impl Mechanism {
         let mut joints = Vec::new();
         let legs = [0, 1].map(|k| {
             let members: Vec<_> = gait.virtual_legs[k].iter().map(|i| &robot.legs[*i]).collect();
+            let mount = |leg: &Leg| [0, 1, 2].map(|axis| leg.mount[axis] - robot.platform.com[axis]);
             let share = 1.0 / members.len() as f64;
             let first = joints.len();
             let mut hip = [0.0; 3];
@@ -89,6 +99,7 @@ impl Mechanism {
                 let mean: f64 = members.iter().map(|leg| leg.mount[axis]).sum::<f64>() * share;
                 *h = mean - robot.platform.com[axis];
             }
+            let real = members.iter().map(|leg| Member { name: leg.name.clone(), mount: mount(leg) }).collect();
             let mut parent = 0;
             let mut offset = hip;
             for (depth, segment) in members[0].chain.iter().enumerate() {
@@ -109,7 +120,7 @@ impl Mechanism {
                 parent = bodies.len() - 1;
                 offset = [0.0, -segment.link.length, 0.0];
             }
-            VirtualLeg { joints: first..joints.len(), foot_body: parent, foot: offset }
+            VirtualLeg { members: real, joints: first..joints.len(), foot_body: parent, foot: offset }
         });
         let unactuated = match gait.unactuated {
             Unactuated::Platform => joints.len(),
