@@ -2,6 +2,7 @@
 
 #![forbid(unsafe_code)]
 
+pub mod altered;
 pub mod constraints;
 pub mod cost;
 pub mod cycle;

@@ -112,6 +112,8 @@ pub struct Limits {
     pub swing_clearance: f64,
     /// s.
     pub half_step_duration: [f64; 2],
+    /// Of the platform's mass centre above the ground, m.
+    pub min_platform_height: f64,
 }
 
 /// Floating-point operations of a generated kernel.

@@ -1,4 +1,4 @@
-//! The platform stays above the ground.
+//! The platform stays above the ground, at least as high as its limit.
 //!
 //! The equations know the ground only at the feet: without this they admit a robot that hangs
 //! upside down below its own feet, and cheaply so.
@@ -9,5 +9,6 @@ use crate::model::Description;
 
 pub fn constraint(description: &Description, y: &Quantities) -> PathConstraint {
     let terms = vec![(y.height(), 1.0)];
-    PathConstraint::linear("platform above the ground".into(), description.leg_length(), 0.0, terms)
+    let least = description.limits.min_platform_height;
+    PathConstraint::linear("platform height".into(), description.leg_length(), -least, terms)
 }

@@ -27,8 +27,8 @@ pub enum Constraint {
     Friction,
     /// Swing foot above the parabola 4 h s (1 − s).
     Clearance,
-    /// Platform's mass centre above the ground.
-    Ground,
+    /// Platform's mass centre above the ground by its minimum.
+    PlatformHeight,
     /// Swing foot on the ground at the end; equality.
     Touchdown,
     /// T ≥ its minimum.
@@ -61,7 +61,7 @@ impl Constraint {
             ImpulseFriction,
             Leaving,
             MeanSpeed,
-            Ground,
+            PlatformHeight,
         ];
         of_joints.chain(others)
     }
@@ -89,7 +89,7 @@ impl Constraint {
             Constraint::ImpulseFriction => "friction of the impulse".into(),
             Constraint::Leaving => "leaving foot".into(),
             Constraint::MeanSpeed => "mean speed".into(),
-            Constraint::Ground => "platform above the ground".into(),
+            Constraint::PlatformHeight => "platform height".into(),
         }
     }
 }
@@ -128,7 +128,7 @@ impl Tally {
             Constraint::ImpulseFriction => joints + 7,
             Constraint::Leaving => joints + 8,
             Constraint::MeanSpeed => joints + 9,
-            Constraint::Ground => joints + 10,
+            Constraint::PlatformHeight => joints + 10,
         };
         let margin = if margin.is_nan() { f64::MIN } else { margin };
         if let Some(entry) = self.entries.get_mut(slot).filter(|entry| margin < entry.1) {

@@ -60,7 +60,8 @@ pub fn evaluate(
         judge.joints(&state, t, tally);
         judge.reaction(&state.force, t, tally);
         judge.clearance(&state, s, phase.duration, tally);
-        tally.note(Constraint::Ground, state.platform.y / judge.leg, t);
+        let height = state.platform.y - description.limits.min_platform_height;
+        tally.note(Constraint::PlatformHeight, height / judge.leg, t);
         if i == 0 {
             ends[0] = state.platform.x;
         }

@@ -120,6 +120,9 @@ fn limits_are_judged_at_their_place() {
     let high = changed(&Trot, |d| d.limits.swing_clearance = 0.1);
     assert!(found(&verify(&high, &motion, base.speed, GRID).unwrap(), "swing clearance").margin < -0.1);
 
+    let tall = changed(&Trot, |d| d.limits.min_platform_height = 0.4);
+    assert!(found(&verify(&tall, &motion, base.speed, GRID).unwrap(), "platform height").margin < -0.1);
+
     let hasty = changed(&Trot, |d| d.limits.half_step_duration = [1.0, 2.0]);
     assert!(found(&verify(&hasty, &motion, base.speed, GRID).unwrap(), "shortest half step").margin < -0.5);
 

@@ -68,7 +68,7 @@ pub fn description(m: &Mechanism, functions: &[Function], runtime: &TokenStream)
     let unactuated = m.unactuated;
     let l = &m.limits;
     let (friction, force, clearance) = (float(l.friction), float(l.min_vertical_force), float(l.swing_clearance));
-    let duration = floats(&l.half_step_duration);
+    let (duration, height) = (floats(&l.half_step_duration), float(l.min_platform_height));
     quote! {
         #runtime::Description {
             gait: #gait, robot: #robot, gravity: #gravity, lateral: #lateral,
@@ -76,7 +76,8 @@ pub fn description(m: &Mechanism, functions: &[Function], runtime: &TokenStream)
             bodies: std::borrow::Cow::Borrowed(&[#(#bodies),*]), joints: std::borrow::Cow::Borrowed(&[#(#joints),*]), legs: [#(#legs),*],
             unactuated: #unactuated, polynomial_order: #order, early: [#(#early),*],
             limits: #runtime::Limits { friction: #friction, min_vertical_force: #force,
-                swing_clearance: #clearance, half_step_duration: #duration },
+                swing_clearance: #clearance, half_step_duration: #duration,
+                min_platform_height: #height },
             operations: &[#(#operations),*],
         }
     }

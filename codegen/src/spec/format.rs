@@ -199,5 +199,12 @@ pub(super) static LIMITS: Table = Table {
             "Height of the parabola above which the swing foot stays.",
         ),
         Key::new("half_step_duration", Pair(Positive), "s", "Shortest and longest half step."),
+        Key::new(
+            "min_platform_height",
+            Number(NonNegative),
+            "m",
+            "Least height of the platform's mass centre above the ground.",
+        )
+        .or("0"),
     ],
 };

@@ -86,10 +86,15 @@ fn limits(view: &View<'_>, sink: &mut Sink) -> Option<Limits> {
     let min_vertical_force = view.number("min_vertical_force", sink);
     let swing_clearance = view.number("swing_clearance", sink);
     let half_step_duration = view.pair("half_step_duration", sink);
+    let min_platform_height = match view.has("min_platform_height") {
+        true => view.number("min_platform_height", sink).map(|height| height.value),
+        false => Some(0.0),
+    };
     Some(Limits {
         friction: friction?.value,
         min_vertical_force: min_vertical_force?.value,
         swing_clearance: swing_clearance?.value,
         half_step_duration: half_step_duration?.value,
+        min_platform_height: min_platform_height?,
     })
 }

@@ -6,8 +6,9 @@
 //! satisfy beyond its form is checked in `bodies.rs`, `tree.rs`, `chain.rs` (robot), `pairing.rs`, `mirror.rs` and
 //! `coordinates.rs` (gait).
 //!
-//! A quantity with a unit never has a default, with one exception: a platform's mass centre lies at the
-//! origin of the frame of the legs' mounts unless `com` says otherwise. Other defaults: a joint's `axis` is
+//! A quantity with a unit never has a default, with two exceptions: a platform's mass centre lies at the
+//! origin of the frame of the legs' mounts unless `com` says otherwise, and it must stay above the ground,
+//! at no particular height unless `min_platform_height` says so. Other defaults: a joint's `axis` is
 //! pitch, a leg's `first_joint` is the only joint that hangs on the platform, a gait's `name` is its file's
 //! name and its `polynomial_order` is 4.
 

@@ -74,6 +74,7 @@ fn the_shipped_gaits() {
         min_vertical_force: 10.0,
         swing_clearance: 0.005,
         half_step_duration: [0.05, longest],
+        min_platform_height: 0.0,
     };
     let gait = |name: &str, virtual_legs, rotation, unactuated, half_steps, longest| Gait {
         name: name.into(),
@@ -119,9 +120,11 @@ fn what_may_be_left_out() {
     let text = read("robot.toml").replace("axis = \"pitch\"\n", "");
     let robot = parse_robot("robot.toml", &text).unwrap_or_else(|found| panic!("{}", rendered(found)));
     assert_eq!(robot.robot, shipped_robot().robot);
-    let text = format!("name = \"slow_trot\"\npolynomial_order = 6\n{}", read("gaits/trot.toml"));
+    let trot = read("gaits/trot.toml").replace("[limits]", "[limits]\nmin_platform_height = 0.12");
+    let text = format!("name = \"slow_trot\"\npolynomial_order = 6\n{trot}");
     let gait = parse_gait("elsewhere/trot.toml", &text, &robot).unwrap_or_else(|found| panic!("{}", rendered(found)));
     assert_eq!((gait.name.as_str(), gait.polynomial_order), ("slow_trot", 6));
+    assert_eq!(gait.limits.min_platform_height, 0.12);
 }
 
 /// A mass centre as a vector is the same as a distance along the link, which points along -y.

@@ -139,4 +139,6 @@ pub struct Limits {
     pub swing_clearance: f64,
     /// Shortest and longest half step, s.
     pub half_step_duration: [f64; 2],
+    /// Of the platform's mass centre, m.
+    pub min_platform_height: f64,
 }

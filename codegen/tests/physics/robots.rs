@@ -128,7 +128,13 @@ pub fn random(build: &Build, draws: &mut Draws) -> Mechanism {
         unactuated,
         half_steps: HalfSteps::Distinct,
         polynomial_order: 4,
-        limits: Limits { friction: 1.0, min_vertical_force: 1.0, swing_clearance: 0.0, half_step_duration: [0.1, 1.0] },
+        limits: Limits {
+            friction: 1.0,
+            min_vertical_force: 1.0,
+            swing_clearance: 0.0,
+            half_step_duration: [0.1, 1.0],
+            min_platform_height: 0.0,
+        },
     };
     Mechanism::new(&robot, &gait)
 }
