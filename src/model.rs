@@ -64,8 +64,8 @@ pub struct Body {
     pub mass: f64,
     /// Mass centre from its joint in its own axes, m.
     pub com: [f64; 3],
-    /// Moments about the mass centre, kg·m².
-    pub inertia: [f64; 3],
+    /// Tensor about the mass centre in its own axes, kg·m².
+    pub inertia: [[f64; 3]; 3],
 }
 
 /// An actuated joint; N·m, rad and rad/s at the joint.
@@ -200,7 +200,10 @@ impl Description {
         }
         let from =
             if k < b.first_joint { b.first_joint + (k - a.first_joint) } else { a.first_joint + (k - b.first_joint) };
-        (from, 1.0)
+        // A mirror image turns the other way about every axis that lies in the plane of the mirror.
+        let turns = |b: &&Body| b.coordinate == Some(k) && b.axis != 2;
+        let mirrored = self.rotation == Rotation::Roll && self.bodies.iter().any(|b| turns(&b));
+        (from, if mirrored { -1.0 } else { 1.0 })
     }
 }
 

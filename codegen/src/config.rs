@@ -101,7 +101,8 @@ pub fn generate(robot: &SpecFile, gaits: &[SpecFile], runtime: &str) -> Result<V
             .iter()
             .map(|(file, gait)| {
                 scope.spawn(move || {
-                    emit::gait_source(&Mechanism::new(robot_spec, gait), runtime, &origin(&[robot, file]))
+                    let robot_spec = robot_spec.locked(&gait.locked).map_err(|t| format!("`{}` is tilted", t.joint))?;
+                    emit::gait_source(&Mechanism::new(&robot_spec, gait), runtime, &origin(&[robot, file]))
                 })
             })
             .collect();

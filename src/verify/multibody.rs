@@ -172,16 +172,16 @@ impl<'a> Multibody<'a> {
     /// Angular momentum of a body about its mass centre if it turned at `spin`.
     pub fn spin_momentum(&self, body: usize, spin: &Vec3) -> Vec3 {
         let rotation = &self.frames[body].rotation;
-        rotation * rotation.tr_mul(spin).component_mul(&Vec3::from(self.description.bodies[body].inertia))
+        rotation * (inertia(self.description, body) * rotation.tr_mul(spin))
     }
 
     /// Moment that a body's own rotation takes, about its mass centre: I α + ω × I ω, N·m.
     pub fn spin_moment(&self, body: usize) -> Vec3 {
         let Frame { rotation, spin, spin_rate, .. } = &self.frames[body];
-        // In the body's axes, where the inertia is diagonal.
-        let inertia = Vec3::from(self.description.bodies[body].inertia);
+        // In the body's axes, where the inertia is constant.
+        let inertia = inertia(self.description, body);
         let (spin, spin_rate) = (rotation.tr_mul(spin), rotation.tr_mul(spin_rate));
-        rotation * (spin_rate.component_mul(&inertia) + spin.cross(&spin.component_mul(&inertia)))
+        rotation * (inertia * spin_rate + spin.cross(&(inertia * spin)))
     }
 
     /// A(q) of eq. 5, row-major, kg, kg·m and kg·m².
@@ -292,6 +292,12 @@ impl Frame {
         self.spin_rate += self.axis * acceleration + self.spin.cross(&self.axis) * rate;
         self.spin += self.axis * rate;
     }
+}
+
+/// Inertia of a body about its mass centre, in its own axes.
+fn inertia(description: &Description, body: usize) -> Matrix3<f64> {
+    // Rows for columns: it is symmetric.
+    Matrix3::from(description.bodies[body].inertia)
 }
 
 fn unit(k: usize) -> Vec3 {

@@ -112,7 +112,7 @@ impl Frame {
             sum
         });
         let rates: Vec<Var> = self.turn.iter().filter_map(|q| ring.rate_of(*q)).collect();
-        spin[index(self.axis)] += &ring.sum(&rates);
+        spin[self.axis.index()] += &ring.sum(&rates);
         spin
     }
 
@@ -128,18 +128,9 @@ impl Frame {
     }
 }
 
-/// x, y, z as 0, 1, 2.
-pub fn index(axis: Axis) -> usize {
-    match axis {
-        Axis::Roll => 0,
-        Axis::Yaw => 1,
-        Axis::Pitch => 2,
-    }
-}
-
 fn elementary(ring: &mut Ring, axis: Axis, turn: &[Var]) -> Mat3 {
     let (s, c) = ring.sin_cos(turn);
-    let i = index(axis);
+    let i = axis.index();
     let (j, k) = ((i + 1) % 3, (i + 2) % 3);
     let mut m = identity();
     m[j][j] = c.clone();

@@ -15,7 +15,6 @@ mod staging;
 mod stance;
 
 pub use kernel::{Input, Kernel, Output, Shape};
-pub use kinematics::index as axis_index;
 pub use model::Model;
 
 use crate::mechanism::Mechanism;

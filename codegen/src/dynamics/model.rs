@@ -3,6 +3,7 @@
 use super::kinematics::{Coordinates, Kinematics, Vec3, add, cross, dot, subtract};
 use crate::expr::{Poly, Ring, Var};
 use crate::mechanism::Mechanism;
+use crate::spec::Inertia;
 use std::collections::BTreeMap;
 
 /// Symbols, kinematics and mechanism of one gait.
@@ -110,7 +111,7 @@ impl Model {
             let velocity = self.rate(centre);
             let mut acceleration = self.rate(&velocity);
             acceleration[1] += &Poly::constant(self.mechanism.gravity);
-            let (mass, inertia) = (self.mechanism.bodies[b].mass, self.mechanism.bodies[b].inertia[2]);
+            let (mass, inertia) = (self.mechanism.bodies[b].mass, self.mechanism.bodies[b].inertia[2][2]);
             let spin = self.kinematics.bodies[b].spin[2].scaled(inertia);
             sigma += &cross(centre, &velocity)[2].scaled(mass);
             sigma += &spin;
@@ -191,9 +192,15 @@ impl Model {
     }
 }
 
-/// Diagonal inertia times a vector in the body's axes.
-pub fn scaled(v: &Vec3, inertia: &[f64; 3]) -> Vec3 {
-    [0, 1, 2].map(|i| v[i].scaled(inertia[i]))
+/// Inertia times a vector in the body's axes.
+pub fn scaled(v: &Vec3, inertia: &Inertia) -> Vec3 {
+    [0, 1, 2].map(|i| {
+        let mut sum = v[i].scaled(inertia[i][i]);
+        for j in (0..3).filter(|j| *j != i && inertia[i][*j] != 0.0) {
+            sum += &v[j].scaled(inertia[i][j]);
+        }
+        sum
+    })
 }
 
 /// In a planar gait all bodies move in the sagittal plane: z does not matter.

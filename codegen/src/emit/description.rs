@@ -18,13 +18,14 @@ fn floats(values: &[f64]) -> TokenStream {
 
 pub fn description(m: &Mechanism, functions: &[Function], runtime: &TokenStream) -> TokenStream {
     let bodies = m.bodies.iter().map(|b| {
-        let (name, axis) = (&b.name, super::super::dynamics::axis_index(b.axis));
+        let (name, axis) = (&b.name, b.axis.index());
         let parent = option(b.parent);
         let coordinate = option(b.coordinate);
-        let (offset, mass, com, inertia) = (floats(&b.offset), float(b.mass), floats(&b.com), floats(&b.inertia));
+        let (offset, mass, com) = (floats(&b.offset), float(b.mass), floats(&b.com));
+        let inertia = b.inertia.iter().map(|row| floats(row));
         quote! {
             #runtime::Body { name: #name, parent: #parent, coordinate: #coordinate, axis: #axis,
-                offset: #offset, mass: #mass, com: #com, inertia: #inertia }
+                offset: #offset, mass: #mass, com: #com, inertia: [#(#inertia),*] }
         }
     });
     let joints = m.joints.iter().map(|j| {

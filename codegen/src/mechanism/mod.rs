@@ -1,9 +1,9 @@
 //! From the specification to a mechanism: one tree of rigid bodies per gait, with numbers.
 //!
 //! This is where virtual legs come from (§2.1): the real legs that move together become one leg
-//! whose hip is the mean of their mounts and whose masses and inertias are their sums.
+//! whose hip is the mean of their mounts and whose masses and inertias are their sums ([`Robot::virtual_leg`]).
 
-use crate::spec::{Axis, Gait, HalfSteps, Joint, Leg, Limits, Robot, Rotation, Unactuated};
+use crate::spec::{Axis, Gait, HalfSteps, Inertia, Joint, Limits, Robot, Rotation, Unactuated};
 
 /// The tree of rigid bodies of one gait's model; SI units, body axes x forward, y up, z right.
 #[derive(Clone, Debug)]
@@ -40,8 +40,8 @@ pub struct Body {
     pub mass: f64,
     /// Mass centre from its own joint, in its own axes, m.
     pub com: [f64; 3],
-    /// Moments about the mass centre in its own axes, kg·m².
-    pub inertia: [f64; 3],
+    /// About the mass centre in its own axes, kg·m².
+    pub inertia: Inertia,
 }
 
 /// An actuated joint, seen at the joint: N·m, rad/s.
@@ -76,7 +76,8 @@ pub struct Member {
 }
 
 impl Mechanism {
-    /// Builds the virtual-leg model of `gait`. Both must have passed validation.
+    /// Builds the virtual-leg model of `gait`. Both must have passed validation, and the robot must be
+    /// one whose locked joints are gone ([`Robot::locked`]).
     pub fn new(robot: &Robot, gait: &Gait) -> Mechanism {
         let mut bodies = vec![Body {
             name: robot.platform.name.clone(),
@@ -90,37 +91,31 @@ impl Mechanism {
         }];
         let mut joints = Vec::new();
         let legs = [0, 1].map(|k| {
-            let members: Vec<_> = gait.virtual_legs[k].iter().map(|i| &robot.legs[*i]).collect();
-            let mount = |leg: &Leg| [0, 1, 2].map(|axis| leg.mount[axis] - robot.platform.com[axis]);
-            let share = 1.0 / members.len() as f64;
+            let leg = robot.virtual_leg(&gait.virtual_legs[k]);
+            let from_centre = |mount: &[f64; 3]| [0, 1, 2].map(|axis| mount[axis] - robot.platform.com[axis]);
+            let members = gait.virtual_legs[k].iter().map(|i| &robot.legs[*i]);
+            let members =
+                members.map(|leg| Member { name: leg.name.clone(), mount: from_centre(&leg.mount) }).collect();
             let first = joints.len();
-            let mut hip = [0.0; 3];
-            for (axis, h) in hip.iter_mut().enumerate() {
-                let mean: f64 = members.iter().map(|leg| leg.mount[axis]).sum::<f64>() * share;
-                *h = mean - robot.platform.com[axis];
-            }
-            let real = members.iter().map(|leg| Member { name: leg.name.clone(), mount: mount(leg) }).collect();
             let mut parent = 0;
-            let mut offset = hip;
-            for (depth, segment) in members[0].chain.iter().enumerate() {
-                let links: Vec<_> = members.iter().map(|leg| &leg.chain[depth].link).collect();
-                let mass = links.iter().map(|l| l.mass).sum();
-                let inertia = [0, 1, 2].map(|a| links.iter().map(|l| l.inertia[a]).sum());
+            let mut offset = from_centre(&leg.mount);
+            for segment in &leg.chain {
+                let link = &segment.link;
                 bodies.push(Body {
-                    name: format!("{}{}", segment.link.name, k + 1),
+                    name: format!("{}{}", link.name, k + 1),
                     parent: Some(parent),
                     coordinate: Some(joints.len()),
                     axis: segment.joint.axis,
                     offset,
-                    mass,
-                    com: segment.link.com,
-                    inertia,
+                    mass: link.mass,
+                    com: link.com,
+                    inertia: link.inertia,
                 });
                 joints.push(Actuated::new(&segment.joint, k + 1));
                 parent = bodies.len() - 1;
-                offset = [0.0, -segment.link.length, 0.0];
+                offset = link.end;
             }
-            VirtualLeg { members: real, joints: first..joints.len(), foot_body: parent, foot: offset }
+            VirtualLeg { members, joints: first..joints.len(), foot_body: parent, foot: offset }
         });
         let unactuated = match gait.unactuated {
             Unactuated::Platform => joints.len(),

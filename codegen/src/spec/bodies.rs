@@ -2,7 +2,9 @@
 
 use super::Code;
 use super::diagnostic::Sink;
-use super::types::{Actuator, Link, Platform};
+use super::locked::tensor;
+use super::rigid::Rigid;
+use super::types::{Actuator, Inertia, Link, Platform};
 use super::view::View;
 
 pub(super) fn platform(name: &str, view: &View<'_>, sink: &mut Sink) -> Option<Platform> {
@@ -14,15 +16,18 @@ pub(super) fn platform(name: &str, view: &View<'_>, sink: &mut Sink) -> Option<P
 
 pub(super) fn link(name: &str, view: &View<'_>, sink: &mut Sink) -> Option<Link> {
     let mass = view.number("mass", sink);
-    let length = view.number("length", sink);
-    let com = view.com("com", sink);
+    let end = view.along("length", sink);
+    let com = view.along("com", sink);
     let inertia = inertia(view, ["lateral", "axial", "swing"], sink);
-    Some(Link { name: name.to_string(), mass: mass?.value, length: length?.value, com: com?, inertia: inertia? })
+    let foot = if view.has("foot_mass") { view.number("foot_mass", sink)?.value } else { 0.0 };
+    let end = end?;
+    let body = Rigid { mass: mass?.value, com: com?, inertia: inertia? }.with(&Rigid::point(foot, end));
+    Some(Link { name: name.to_string(), mass: body.mass, end, com: body.com, inertia: body.inertia })
 }
 
-/// Moments about x, y, z under their names in this table. No moment of a rigid body exceeds the sum of the
-/// other two: Ix + Iy - Iz = 2 ∫ z² dm ≥ 0.
-fn inertia(view: &View<'_>, keys: [&str; 3], sink: &mut Sink) -> Option<[f64; 3]> {
+/// Moments about x, y, z under their names in this table, and products. No moment of a rigid body exceeds the
+/// sum of the other two: Ix + Iy - Iz = 2 ∫ z² dm ≥ 0.
+fn inertia(view: &View<'_>, keys: [&str; 3], sink: &mut Sink) -> Option<Inertia> {
     let moments = view.table("inertia", sink)?;
     let read = keys.map(|key| moments.number(key, sink));
     let [Some(x), Some(y), Some(z)] = read else {
@@ -45,7 +50,19 @@ fn inertia(view: &View<'_>, keys: [&str; 3], sink: &mut Sink) -> Option<[f64; 3]
             return None;
         }
     }
-    Some(values)
+    if !moments.has("products") {
+        return Some(tensor(values, [0.0; 3]));
+    }
+    let products = moments.vector("products", sink)?;
+    let inertia = tensor(values, products.value);
+    if !(Rigid { mass: 0.0, com: [0.0; 3], inertia }).is_possible() {
+        let title = format!("`{}`: an inertia that no rigid body can have", view.join("inertia"));
+        let help =
+            "the order is [∫yz dm, ∫zx dm, ∫xy dm]; the signs are those of the integrals, opposite to Iyz, Izx, Ixy";
+        sink.report(Code::ImpossibleInertia, title, &products.span, "too large for these moments", help);
+        return None;
+    }
+    Some(inertia)
 }
 
 /// A sum of decimal numbers without the noise of its last digits.

@@ -164,11 +164,7 @@ impl Parts {
             let mount = leg.mount.as_ref()?;
             let segments: Option<Vec<Segment>> = chain.iter().map(|&j| self.segment(j)).collect();
             legs.push(Leg { name: leg.name.value.clone(), mount: mount.value, chain: segments? });
-            places.push(LegPlaces {
-                name: leg.name.span.clone(),
-                mount: mount.span.clone(),
-                axes: chain.iter().map(|&j| self.joints[j].axis.span.clone()).collect(),
-            });
+            places.push(LegPlaces { name: leg.name.span.clone(), mount: mount.span.clone() });
         }
         Some((platform.clone(), legs, places))
     }

@@ -81,6 +81,8 @@ codes! {
     NotOneUnactuated = "S036",
     /// A joint that leaves the plane of a planar gait.
     OutOfPlane = "S037",
+    /// A joint that the gait cannot hold still.
+    CannotLock = "S040",
 }
 
 impl fmt::Display for Code {

@@ -5,7 +5,7 @@
 //! β is the platform's rotation where it has one; else it is the joint of a leg that hangs on the platform.
 
 use super::Code;
-use super::diagnostic::{At, Label, Sink};
+use super::diagnostic::{At, Sink};
 use super::gait::RawGait;
 use super::nearest::nearest;
 use super::pairing::joints;
@@ -146,18 +146,17 @@ pub(super) fn check_plane(raw: &RawGait, robot: &RobotFile, sink: &mut Sink) {
         return;
     }
     let mut told: Vec<&str> = Vec::new();
-    for (leg, places) in robot.robot.legs.iter().zip(&robot.places) {
-        for (segment, axis) in leg.chain.iter().zip(&places.axes) {
-            let joint = &segment.joint;
-            if joint.axis == Axis::Pitch || told.contains(&joint.name.as_str()) {
-                continue;
-            }
-            told.push(&joint.name);
-            let title = format!("joint `{}` leaves the plane of this gait", joint.name);
-            let help = "give the joint axis = \"pitch\", or let the platform roll: moves = [\"x\", \"y\", \"z\"], rotates = \"roll\"";
-            sink.report(Code::OutOfPlane, title, &rotation.span, "a gait in the sagittal plane", help);
-            let text = format!("`{}` does not turn about the pitch axis", joint.name);
-            sink.beside(Label { source: robot.source.clone(), span: axis.clone(), text });
+    for joint in robot.robot.legs.iter().flat_map(|leg| &leg.chain).map(|segment| &segment.joint) {
+        if joint.axis == Axis::Pitch || told.contains(&joint.name.as_str()) {
+            continue;
         }
+        told.push(&joint.name);
+        let title = format!("joint `{}` leaves the plane of this gait", joint.name);
+        let help = format!(
+            "hold it still: locked = {{ {} = 0.0 }}; or let the platform roll: moves = [\"x\", \"y\", \"z\"], rotates = \"roll\"",
+            joint.name
+        );
+        sink.report(Code::OutOfPlane, title, &rotation.span, "a gait in the sagittal plane", help);
+        sink.beside(robot.axis_label(&joint.name, format!("`{}` does not turn about the pitch axis", joint.name)));
     }
 }

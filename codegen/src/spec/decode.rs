@@ -107,18 +107,36 @@ impl View<'_> {
         None
     }
 
-    /// A mass centre: a distance along the link (which points along -y), or a vector.
-    pub fn com(&self, name: &str, sink: &mut Sink) -> Option<[f64; 3]> {
+    /// A point of a link: a distance along it (it points along -y), or a vector.
+    pub fn along(&self, name: &str, sink: &mut Sink) -> Option<[f64; 3]> {
         let field = self.field(name)?;
-        match field.value {
-            DeValue::Array(_) => field.numbers(Bound::Any, sink).map(|at| at.value),
-            DeValue::Float(_) | DeValue::Integer(_) => {
-                let along = field.number(field.value, &field.span, Bound::Any, sink)?;
+        match (field.value, &field.key.kind) {
+            (DeValue::Array(_), _) => field.numbers(Bound::Any, sink).map(|at| at.value),
+            (DeValue::Float(_) | DeValue::Integer(_), Kind::Along(bound)) => {
+                let along = field.number(field.value, &field.span, *bound, sink)?;
                 // 0 - along, not -along: a mass centre in the joint is at 0, not at -0.
                 Some([0.0, 0.0 - along, 0.0])
             }
             _ => field.wrong_type(sink),
         }
+    }
+
+    /// Angles under names, in the order of the file.
+    pub fn angles(&self, name: &str, sink: &mut Sink) -> Option<Vec<(At<String>, f64)>> {
+        let field = self.field(name)?;
+        let DeValue::Table(entries) = field.value else {
+            return field.wrong_type(sink);
+        };
+        let mut entries: Vec<_> = entries.iter().collect();
+        entries.sort_by_key(|(key, _)| key.span().start);
+        let read: Vec<_> = entries
+            .into_iter()
+            .map(|(key, value)| {
+                let angle = field.number(value.get_ref(), &value.span(), Bound::Angle, sink)?;
+                Some((At { value: key.get_ref().to_string(), span: key.span() }, angle))
+            })
+            .collect();
+        read.into_iter().collect()
     }
 
     /// Lists of names.

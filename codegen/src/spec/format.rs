@@ -1,7 +1,9 @@
 //! The format: the tables of `robot.toml` and of a gait file, key by key, with units, bounds and defaults.
 
-use super::keys::Bound::{Angle, NonNegative, Positive};
-use super::keys::Kind::{Choice, Choices, Com, Coordinate, Map, Name, NameLists, Number, Order, Pair, Text, Vector};
+use super::keys::Bound::{Angle, Any, NonNegative, Positive};
+use super::keys::Kind::{
+    Along, Angles, Choice, Choices, Coordinate, Map, Name, NameLists, Number, Order, Pair, Text, Vector,
+};
 use super::keys::{Key, Kind, Table};
 
 pub(super) static ROBOT: Table = Table {
@@ -29,12 +31,7 @@ pub(super) static PLATFORM: Table = Table {
         Key::new("mass", Number(Positive), "kg", "Mass."),
         Key::new("com", Vector, "m", "Mass centre in the frame of the legs' mounts: x forward, y up, z to the right.")
             .or("[0, 0, 0]"),
-        Key::new(
-            "inertia",
-            Kind::Table(&PLATFORM_INERTIA),
-            "kg·m²",
-            "Principal moments of inertia about the mass centre.",
-        ),
+        Key::new("inertia", Kind::Table(&PLATFORM_INERTIA), "kg·m²", "Moments of inertia about the mass centre."),
     ],
 };
 
@@ -45,22 +42,37 @@ pub(super) static PLATFORM_INERTIA: Table = Table {
         Key::new("roll", Number(NonNegative), "kg·m²", "About x, forward."),
         Key::new("yaw", Number(NonNegative), "kg·m²", "About y, up."),
         Key::new("pitch", Number(NonNegative), "kg·m²", "About z, to the right."),
+        Key::new("products", Vector, "kg·m²", PRODUCTS).or("[0, 0, 0]"),
     ],
 };
+
+const PRODUCTS: &str = "Products of inertia [∫yz dm, ∫zx dm, ∫xy dm], where the axes are not principal ones.";
 
 pub(super) static LINK: Table = Table {
     noun: "a link",
     doc: "A link of a leg. Its axes are the platform's where all joints are at zero: x forward, y up, z to the right.",
     keys: &[
         Key::new("mass", Number(Positive), "kg", "Mass."),
-        Key::new("length", Number(Positive), "m", "From its joint to the next one, or to the foot, along -y."),
+        Key::new(
+            "length",
+            Along(Positive),
+            "m",
+            "From its joint to the next one, or to the foot: distance along -y, or [x, y, z] in the link's axes.",
+        ),
         Key::new(
             "com",
-            Com,
+            Along(Any),
             "m",
             "Mass centre: distance from its joint along the link, or [x, y, z] in the link's axes.",
         ),
-        Key::new("inertia", Kind::Table(&LINK_INERTIA), "kg·m²", "Principal moments of inertia about the mass centre."),
+        Key::new("inertia", Kind::Table(&LINK_INERTIA), "kg·m²", "Moments of inertia about the mass centre."),
+        Key::new(
+            "foot_mass",
+            Number(NonNegative),
+            "kg",
+            "Mass of a foot: a point at the link's end, in addition to `mass`.",
+        )
+        .or("no foot"),
     ],
 };
 
@@ -71,6 +83,7 @@ pub(super) static LINK_INERTIA: Table = Table {
         Key::new("swing", Number(NonNegative), "kg·m²", "About the transverse axis z."),
         Key::new("lateral", Number(NonNegative), "kg·m²", "About the forward axis x."),
         Key::new("axial", Number(NonNegative), "kg·m²", "About the link's own axis y."),
+        Key::new("products", Vector, "kg·m²", PRODUCTS).or("[0, 0, 0]"),
     ],
 };
 
@@ -151,6 +164,7 @@ pub(super) static GAIT: Table = Table {
             "",
             "The legs that move together as virtual leg 1, and those that form virtual leg 2. A gait starts on leg 1.",
         ),
+        Key::new("locked", Angles, "rad", "Joints that the gait holds still, each with its angle.").or("none"),
         Key::new("platform", Kind::Table(&MOTION), "", "How the platform may move."),
         Key::new("unactuated", Coordinate, "", "The one coordinate that no actuator drives."),
         Key::new(

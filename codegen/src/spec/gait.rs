@@ -5,6 +5,7 @@ use super::coordinates;
 use super::decode::NameLists;
 use super::diagnostic::{At, Diagnostic, Sink, Source};
 use super::format;
+use super::locked;
 use super::mirror;
 use super::name;
 use super::pairing;
@@ -62,7 +63,10 @@ fn read(path: &str, text: &str, robot: &RobotFile, sink: &mut Sink) -> Option<Ga
     };
     let limits = root.table("limits", sink).and_then(|view| limits(&view, sink));
 
+    let locked = if root.has("locked") { root.angles("locked", sink) } else { Some(Vec::new()) };
     let lateral = coordinates::lateral(&raw, sink);
+    // From here on the robot is one without its locked joints.
+    let robot = &locked::with_locked(locked.as_deref()?, robot, sink)?;
     let virtual_legs = pairing::virtual_legs(&raw, &root.key_span("virtual_legs"), robot, sink);
     let unactuated = coordinates::unactuated(&raw, virtual_legs.as_ref(), robot, sink);
     if let Some(legs) = &virtual_legs {
@@ -72,6 +76,7 @@ fn read(path: &str, text: &str, robot: &RobotFile, sink: &mut Sink) -> Option<Ga
     Some(Gait {
         name: name?,
         virtual_legs: virtual_legs?,
+        locked: locked?.into_iter().map(|(name, angle)| (name.value, angle)).collect(),
         lateral: lateral?,
         rotation: raw.rotation?.value,
         unactuated: unactuated?,

@@ -41,13 +41,15 @@ pub(super) enum Kind {
     /// `[lowest, highest]`.
     Pair(Bound),
     /// A distance along the link, or `[x, y, z]`.
-    Com,
+    Along(Bound),
     /// A list of some of a few words.
     Choices(&'static [&'static str]),
     /// Two lists of names.
     NameLists,
     /// `"platform"` or `"leg1.<joint>"`.
     Coordinate,
+    /// Angles under names of joints.
+    Angles,
     Table(&'static Table),
     /// Tables under names of the user's choice, each of one of these forms.
     Map(&'static [&'static Table]),
@@ -111,7 +113,7 @@ impl Kind {
             Self::Text | Self::Name => "\"…\"".into(),
             Self::Choice(words) => words.iter().map(|w| format!("\"{w}\"")).collect::<Vec<_>>().join(" or "),
             Self::Order(orders) => orders.iter().map(i64::to_string).collect::<Vec<_>>().join(" or "),
-            Self::Number(_) | Self::Com => "…".into(),
+            Self::Number(_) | Self::Along(_) => "…".into(),
             Self::Vector => "[x, y, z]".into(),
             Self::Pair(_) => "[lowest, highest]".into(),
             Self::Choices(words) => {
@@ -125,6 +127,7 @@ impl Kind {
                 let parts: Vec<_> = keys.map(|k| format!("{} = {}", k.name, k.kind.shape())).collect();
                 format!("{{ {} }}", parts.join(", "))
             }
+            Self::Angles => "{ <joint> = … }".into(),
             Self::Map(_) => "{ <name> = { … } }".into(),
         }
     }
@@ -137,10 +140,10 @@ impl Kind {
             Self::Number(_) => "a number",
             Self::Vector => "three numbers",
             Self::Pair(_) => "two numbers",
-            Self::Com => "a number or three numbers",
+            Self::Along(_) => "a number or three numbers",
             Self::Choices(_) => "a list of texts",
             Self::NameLists => "two lists of names",
-            Self::Table(_) | Self::Map(_) => "a table",
+            Self::Angles | Self::Table(_) | Self::Map(_) => "a table",
         }
     }
 }

@@ -6,11 +6,14 @@
 //! satisfy beyond its form is checked in `bodies.rs`, `tree.rs`, `chain.rs` (robot), `pairing.rs`, `mirror.rs` and
 //! `coordinates.rs` (gait).
 //!
-//! A quantity with a unit never has a default, with two exceptions: a platform's mass centre lies at the
-//! origin of the frame of the legs' mounts unless `com` says otherwise, and it must stay above the ground,
-//! at no particular height unless `min_platform_height` says so. Other defaults: a joint's `axis` is
+//! What gaits make of legs is in `locked.rs` (joints held still) and `virtual_leg.rs` (legs that move as one).
+//!
+//! A quantity with a unit never has a default, but where absence says all there is: a platform's mass centre
+//! lies at the origin of the frame of the legs' mounts unless `com` says otherwise, axes are principal ones
+//! unless `products` are given, there is no foot without `foot_mass`, and the platform must stay above the
+//! ground at no particular height unless `min_platform_height` says so. Other defaults: a joint's `axis` is
 //! pitch, a leg's `first_joint` is the only joint that hangs on the platform, a gait's `name` is its file's
-//! name and its `polynomial_order` is 4.
+//! name, its `polynomial_order` is 4, and it locks no joints.
 
 mod bodies;
 mod chain;
@@ -22,16 +25,19 @@ mod field;
 mod format;
 mod gait;
 mod keys;
+mod locked;
 mod mirror;
 mod name;
 mod nearest;
 mod pairing;
+mod rigid;
 mod robot;
 mod schema;
 mod syntax;
 mod tree;
 mod types;
 mod view;
+mod virtual_leg;
 
 #[cfg(test)]
 mod tests;
@@ -39,6 +45,7 @@ mod tests;
 pub use code::Code;
 pub use diagnostic::{Diagnostic, Label, Source, Span};
 pub use gait::parse_gait;
+pub use locked::Tilted;
 pub use robot::{RobotFile, parse_robot};
 pub use schema::{gait_schema, robot_schema};
 pub use types::*;

@@ -9,9 +9,7 @@ use super::gait::RawGait;
 use super::nearest::nearest;
 use super::robot::RobotFile;
 use super::types::{Leg, Rotation};
-
-/// Mounts this close are at the same place, m.
-pub(super) const SAME: f64 = 1e-9;
+use super::virtual_leg::{Likeness, SAME, moves_unlike};
 
 /// Resolves the two virtual legs: indices into the robot's legs. `at` is where the key stands.
 pub(super) fn virtual_legs(raw: &RawGait, at: &Span, robot: &RobotFile, sink: &mut Sink) -> Option<[Vec<usize>; 2]> {
@@ -105,7 +103,7 @@ fn check_each_once(lists: [Listed<'_>; 2], at: &Span, robot: &RobotFile, sink: &
     good
 }
 
-/// Legs that move as one need the same joints, and feet that touch the ground together: mounts at the same
+/// Legs that move as one need joints and lengths alike, and feet that touch the ground together: mounts at the same
 /// height, and at the same place across the axis about which the platform rotates.
 fn check_pair(raw: &RawGait, list: &Names, legs: &[usize], robot: &RobotFile, sink: &mut Sink) -> bool {
     let all = &robot.robot.legs;
@@ -114,11 +112,9 @@ fn check_pair(raw: &RawGait, list: &Names, legs: &[usize], robot: &RobotFile, si
     };
     let mut good = true;
     for (&leg, name) in legs.iter().zip(&list.value).skip(1) {
-        if joints(&all[leg]) != joints(&all[lead]) {
-            let title = format!(
-                "legs `{}` and `{}` cannot move as one: they have different joints",
-                all[lead].name, all[leg].name
-            );
+        let rotation = raw.rotation.as_ref().map_or(Rotation::None, |r| r.value);
+        if let Some(why) = moves_unlike(&all[lead], &all[leg], Likeness::of_pair(rotation)) {
+            let title = format!("legs `{}` and `{}` cannot move as one: {why}", all[lead].name, all[leg].name);
             let label = format!("has the joints {}", joints(&all[leg]).join(", "));
             let help = format!(
                 "put it together with legs of the same build; `{}` has the joints {}",
@@ -129,7 +125,6 @@ fn check_pair(raw: &RawGait, list: &Names, legs: &[usize], robot: &RobotFile, si
             good = false;
             continue;
         }
-        let rotation = raw.rotation.as_ref().map_or(Rotation::None, |r| r.value);
         let shared: &[usize] = match rotation {
             Rotation::None => &[1],
             Rotation::Pitch => &[0, 1],
@@ -154,7 +149,7 @@ fn check_pair(raw: &RawGait, list: &Names, legs: &[usize], robot: &RobotFile, si
     good
 }
 
-/// Names of a leg's joints: legs with the same joints have the same links too.
+/// Names of a leg's joints.
 pub(super) fn joints(leg: &Leg) -> Vec<&str> {
     leg.chain.iter().map(|segment| segment.joint.name.as_str()).collect()
 }

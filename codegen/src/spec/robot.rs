@@ -2,7 +2,7 @@
 
 use super::bodies::{actuator, link, platform};
 use super::chain::{self, Parts};
-use super::diagnostic::{At, Diagnostic, Sink, Source, Span};
+use super::diagnostic::{At, Diagnostic, Label, Sink, Source, Span};
 use super::format;
 use super::keys::Table;
 use super::name;
@@ -17,6 +17,8 @@ pub struct RobotFile {
     pub(super) source: Source,
     /// One for each of the robot's legs.
     pub(super) places: Vec<LegPlaces>,
+    /// Where each joint states its axis, or is named.
+    pub(super) axes: Vec<(String, Span)>,
 }
 
 /// Where a leg's parts stand in the file.
@@ -24,14 +26,18 @@ pub struct RobotFile {
 pub(super) struct LegPlaces {
     pub name: Span,
     pub mount: Span,
-    /// Where each joint of the chain states its axis, or is named.
-    pub axes: Vec<Span>,
 }
 
 impl RobotFile {
     /// The file that it was read from.
     pub fn source(&self) -> &Source {
         &self.source
+    }
+
+    /// A label where a joint states its axis.
+    pub(super) fn axis_label(&self, joint: &str, text: String) -> Label {
+        let span = self.axes.iter().find(|(name, _)| name == joint).map_or(0..0, |(_, span)| span.clone());
+        Label { source: self.source.clone(), span, text }
     }
 }
 
@@ -46,19 +52,20 @@ pub fn parse_robot(path: &str, text: &str) -> Result<RobotFile, Vec<Diagnostic>>
     let mut sink = Sink::new(source.clone());
     let read = read(text, &mut sink);
     match read {
-        Some((robot, places)) if sink.is_empty() => Ok(RobotFile { robot, source, places }),
+        Some((robot, places, axes)) if sink.is_empty() => Ok(RobotFile { robot, source, places, axes }),
         _ => Err(sink.into_sorted()),
     }
 }
 
-fn read(text: &str, sink: &mut Sink) -> Option<(Robot, Vec<LegPlaces>)> {
+fn read(text: &str, sink: &mut Sink) -> Option<(Robot, Vec<LegPlaces>, Vec<(String, Span)>)> {
     let root = syntax::document(text, sink)?;
     let root = View::open(&root, &format::ROBOT, String::new(), 0..0, sink);
     let name = name::of_robot(&root, sink);
     let gravity = root.number("gravity", sink);
     let parts = parts(&root, sink);
+    let axes = parts.joints.iter().map(|j| (j.name.value.clone(), j.axis.span.clone())).collect();
     let (platform, legs, places) = chain::assemble(parts, sink)?;
-    Some((Robot { name: name?, gravity: gravity?.value, platform, legs }, places))
+    Some((Robot { name: name?, gravity: gravity?.value, platform, legs }, places, axes))
 }
 
 /// All named tables; `None` stands for one with mistakes, so that references to it still resolve.

@@ -82,7 +82,7 @@ fn value(kind: &Kind) -> String {
         Kind::Number(bound) => number(*bound),
         Kind::Vector => list(Bound::Any, 3),
         Kind::Pair(bound) => list(*bound, 2),
-        Kind::Com => format!("\"anyOf\": [{{ {} }}, {{ {} }}]", number(Bound::Any), list(Bound::Any, 3)),
+        Kind::Along(bound) => format!("\"anyOf\": [{{ {} }}, {{ {} }}]", number(*bound), list(Bound::Any, 3)),
         Kind::Choices(all) => {
             let all = words(all.iter().copied());
             format!("\"type\": \"array\", \"uniqueItems\": true, \"items\": {{ \"enum\": {all} }}")
@@ -93,6 +93,7 @@ fn value(kind: &Kind) -> String {
         Kind::Coordinate => {
             "\"type\": \"string\", \"pattern\": \"^(platform|leg[12][.][A-Za-z][A-Za-z0-9_]*)$\"".into()
         }
+        Kind::Angles => format!("\"type\": \"object\", \"additionalProperties\": {{ {} }}", number(Bound::Angle)),
         // Tables are written by `property`.
         Kind::Table(_) | Kind::Map(_) => "\"type\": \"object\"".into(),
     }

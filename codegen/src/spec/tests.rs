@@ -27,12 +27,17 @@ fn shipped_gait(name: &str) -> Gait {
     parse_gait(&path, &read(&path), &shipped_robot()).unwrap_or_else(|found| panic!("{}", rendered(found)))
 }
 
+fn diagonal(moments: [f64; 3]) -> Inertia {
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| if i == j { moments[i] } else { 0.0 }))
+}
+
 #[test]
 #[allow(clippy::approx_constant)] // the stops are decimal numbers
 fn the_shipped_robot() {
     let robot = shipped_robot().robot;
     assert_eq!((robot.name.as_str(), robot.gravity), ("quadruped", 9.81));
-    let platform = Platform { name: "platform".into(), mass: 6.65, com: [0.0; 3], inertia: [0.2031, 0.5188, 0.3157] };
+    let platform =
+        Platform { name: "platform".into(), mass: 6.65, com: [0.0; 3], inertia: diagonal([0.2031, 0.5188, 0.3157]) };
     assert_eq!(robot.platform, platform);
     let mounts: Vec<_> = robot.legs.iter().map(|leg| (leg.name.as_str(), leg.mount)).collect();
     assert_eq!(
@@ -54,7 +59,13 @@ fn the_shipped_robot() {
     };
     let segment = |joint: &str, range, actuator, link: &str, mass, com: f64, inertia| Segment {
         joint: Joint { name: joint.into(), axis: Axis::Pitch, range, actuator },
-        link: Link { name: link.into(), mass, length: 0.15, com: [0.0, -com, 0.0], inertia: [inertia, 0.0, inertia] },
+        link: Link {
+            name: link.into(),
+            mass,
+            end: [0.0, -0.15, 0.0],
+            com: [0.0, -com, 0.0],
+            inertia: diagonal([inertia, 0.0, inertia]),
+        },
     };
     let chain = [
         segment("haunch", [-0.5236, 1.0472], motor("haunch_motor", 5000.0, 3300.0), "thigh", 1.6, 0.139, 0.00215),
@@ -79,6 +90,7 @@ fn the_shipped_gaits() {
     let gait = |name: &str, virtual_legs, rotation, unactuated, half_steps, longest| Gait {
         name: name.into(),
         virtual_legs,
+        locked: Vec::new(),
         lateral: rotation == Rotation::Roll,
         rotation,
         unactuated,

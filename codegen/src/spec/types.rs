@@ -20,9 +20,12 @@ pub struct Platform {
     pub mass: f64,
     /// Mass centre in the frame in which the legs' mounts are given, m.
     pub com: [f64; 3],
-    /// Moments about the mass centre: roll (x), yaw (y), pitch (z), kg·m².
-    pub inertia: [f64; 3],
+    /// About the mass centre, in platform axes.
+    pub inertia: Inertia,
 }
+
+/// An inertia tensor, kg·m²: moments Ixx, Iyy, Izz on its diagonal, −∫xy dm and the like beside it.
+pub type Inertia = [[f64; 3]; 3];
 
 /// One real leg: a chain of joint + link, from the mount down to the foot.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,16 +63,29 @@ pub enum Axis {
     Pitch,
 }
 
+impl Axis {
+    pub const ALL: [Axis; 3] = [Axis::Roll, Axis::Yaw, Axis::Pitch];
+
+    /// x, y, z as 0, 1, 2.
+    pub const fn index(self) -> usize {
+        match self {
+            Axis::Roll => 0,
+            Axis::Yaw => 1,
+            Axis::Pitch => 2,
+        }
+    }
+}
+
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link {
     pub name: String,
     pub mass: f64,
-    /// Joint to joint (last link: joint to foot), along −y of the link, m.
-    pub length: f64,
+    /// The next joint (last link: the foot) from its own joint, in link axes, m.
+    pub end: [f64; 3],
     /// Mass centre from the proximal joint, in link axes, m.
     pub com: [f64; 3],
-    /// Moments about the mass centre in link axes: lateral (x), axial (y), swing (z), kg·m².
-    pub inertia: [f64; 3],
+    /// About the mass centre, in link axes.
+    pub inertia: Inertia,
 }
 
 /// The actuator of a virtual leg's joint.
@@ -93,6 +109,8 @@ pub struct Gait {
     pub name: String,
     /// Indices into `Robot::legs`: the real legs that make up virtual leg 1 and 2.
     pub virtual_legs: [Vec<usize>; 2],
+    /// Joints that the gait holds at an angle, by name; rad.
+    pub locked: Vec<(String, f64)>,
     /// Whether the platform also moves sideways (z).
     pub lateral: bool,
     pub rotation: Rotation,
@@ -118,7 +136,8 @@ pub enum Rotation {
 pub enum Unactuated {
     /// The platform's rotation.
     Platform,
-    /// A leg's first joint, where the platform does not rotate: `leg` 0 or 1, `joint` in its chain.
+    /// A leg's first joint, where the platform does not rotate: `leg` 0 or 1, `joint` in its chain
+    /// of joints that are not locked.
     Joint { leg: usize, joint: usize },
 }
 

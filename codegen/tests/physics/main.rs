@@ -5,6 +5,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod floating;
+mod gaits;
 mod impact;
 mod jacobians;
 mod numbers;
@@ -94,4 +95,9 @@ builds! {
     amble_on_three_links: 6, 2;
     amble_with_hips_that_abduct: 7, 1;
     amble_with_hips_that_turn: 8, 4;
+    biped: 9, 4;
+    crooked_trot: 10, 6;
+    crooked_curvet: 11, 3;
+    crooked_on_three_links: 12, 2;
+    crooked_amble: 13, 2;
 }

@@ -1,6 +1,5 @@
 //! Small dense linear algebra, differences, and rigid bodies in plain numbers.
 
-use piaffe_codegen::dynamics::axis_index;
 use piaffe_codegen::mechanism::Mechanism;
 use piaffe_codegen::spec::Rotation;
 
@@ -115,7 +114,7 @@ pub fn poses(m: &Mechanism, x: &[f64]) -> (Vec<Pose>, [[f64; 3]; 2]) {
         let frame = match (body.parent, body.coordinate) {
             (Some(parent), Some(k)) => {
                 let (origin, above) = &frames[parent];
-                (add(*origin, apply(above, body.offset)), times(above, &turn(axis_index(body.axis), q[k])))
+                (add(*origin, apply(above, body.offset)), times(above, &turn(body.axis.index(), q[k])))
             }
             _ => (p, platform),
         };
@@ -150,7 +149,7 @@ pub fn momentum(m: &Mechanism, x: &[f64], xd: &[f64], point: [f64; 3]) -> (f64, 
         // RᵀṘ is the cross-product matrix of the spin in the body's axes.
         let skew = |i: usize, j: usize| (0..3).map(|k| pose.rotation[k][i] * rotation_rate[k][j]).sum::<f64>();
         let spin = [skew(2, 1), skew(0, 2), skew(1, 0)];
-        let angular = [0, 1, 2].map(|i| body.inertia[i] * spin[i]);
+        let angular = [0, 1, 2].map(|i| dot(&body.inertia[i], &spin));
         kinetic += 0.5 * body.mass * dot(velocity, velocity) + 0.5 * dot(&spin, &angular);
         let arm = [0, 1, 2].map(|i| pose.com[i] - point[i]);
         let own = apply(&pose.rotation, angular);
