@@ -156,7 +156,7 @@ fn single_support(gait: &dyn Gait, leg: usize, state: &State, a: &[f64], foot: &
         result.insert("forward".into(), json!({ "Xddot": r[..n], "F": r[n..] }));
     }
     if let Some(xdd) = &state.xdd {
-        let condition = condition(&inverse_system(d, a, foot));
+        let condition = condition(&inverse_system(gait, leg, q, a, foot));
         let inverse = unless_singular(
             condition,
             "f1 vanishes: no torque-free coordinate follows from the momentum (eq. 10)",
@@ -202,13 +202,15 @@ fn contact_system(a: &[f64], feet: &[&Vec<f64>], n: usize, nc: usize) -> DMatrix
     m
 }
 
-/// The system for (p̈, β̈, Γ, F) when Q̈ is given (eq. 5 with eq. 4).
-fn inverse_system(d: &Description, a: &[f64], foot: &[f64]) -> DMatrix<f64> {
-    let (np, n) = (d.positions(), d.positions() + d.orientations());
-    let unknown: Vec<usize> = (0..np).chain([np + d.unactuated]).collect();
-    let torques: Vec<usize> = d.independent_torques().collect();
-    let mut m = DMatrix::zeros(n + np, n + np);
-    for (column, &x) in unknown.iter().enumerate() {
+/// The system for (p̈, β̈, Γ, F) when Q̈ is given: eq. 5 with eq. 4, and where no platform turns, with the
+/// balance about the stance foot (eq. 10) that its rotation would obey.
+fn inverse_system(gait: &dyn Gait, leg: usize, q: &[f64], a: &[f64], foot: &[f64]) -> DMatrix<f64> {
+    let d = gait.description();
+    let (np, nq, joints) = (d.positions(), d.orientations(), d.joints());
+    let n = np + nq;
+    let level = usize::from(d.rotation == Rotation::None);
+    let mut m = DMatrix::zeros(n + np + level, n + np + level);
+    for (column, x) in (0..np).chain([np + d.unactuated]).enumerate() {
         for row in 0..n {
             m[(row, column)] = a[row * n + x];
         }
@@ -216,16 +218,22 @@ fn inverse_system(d: &Description, a: &[f64], foot: &[f64]) -> DMatrix<f64> {
             m[(n + c, column)] = foot[x * np + c];
         }
     }
-    for (k, &joint) in torques.iter().enumerate() {
-        m[(np + joint, np + 1 + k)] = -1.0;
-        if d.rotation == Rotation::None && d.hangs_on_platform(joint) {
-            m[(np + d.unactuated, np + 1 + k)] = 1.0;
-        }
+    for joint in 0..joints {
+        m[(np + joint, np + 1 + joint)] = -1.0;
     }
     for row in 0..n {
         for c in 0..np {
-            m[(row, np + 1 + torques.len() + c)] = -foot[row * np + c];
+            m[(row, np + 1 + joints + c)] = -foot[row * np + c];
         }
+    }
+    if level == 1 {
+        let (rows, columns) = (joints + np + 1, 3 * nq);
+        let still = vec![0.0; nq];
+        let jacobian = vector(1 + joints + np + rows * columns, |o| {
+            gait.inverse_jacobian(leg, q, &still, &still[..d.prescribed()], o);
+        });
+        let balance = &jacobian[1 + joints + np + (rows - 1) * columns..];
+        m[(n + np, np)] = balance[2 * nq + d.unactuated];
     }
     m
 }

@@ -1,7 +1,7 @@
 //! Newton–Euler in numbers against the generated kernels: two derivations, one physics.
 
 use crate::motions::{Random, gaits, stepping};
-use piaffe::gaits::trot::Trot;
+use piaffe::gaits::{amble::Amble, trot::Trot};
 use piaffe::model::{Body, Gait};
 use piaffe::verify::{VerifyError, impact::impact, multibody::Multibody, support::Support, verify};
 
@@ -107,10 +107,41 @@ fn single_support_agrees() {
 fn a_vanishing_f1_is_found() {
     // Without mass nothing determines β̈.
     let mut d = Trot.description().clone();
-    let massless = d.bodies.iter().map(|body| Body { mass: 0.0, inertia: [0.0; 3], ..body.clone() });
+    let massless = d.bodies.iter().map(|body| Body { mass: 0.0, inertia: [[0.0; 3]; 3], ..body.clone() });
     d.bodies = massless.collect();
     assert_eq!(Support::new(&d, 0).accelerate(&[0.1, -0.5, 0.2, -0.7], &[1.0; 4], &mut [0.0; 4]), None);
     assert!(matches!(verify(&d, &stepping(&d), 0.3, 11), Err(VerifyError::Blowup { half_step: 1, time: 0.0 })));
+}
+
+/// Where the legs exchange their roles the robot is its own mirror image, whatever the axes of its joints.
+#[test]
+fn exchanged_roles_are_mirror_images() {
+    let mut d = Amble.description().clone();
+    let abducting = d.bodies.iter().map(|b| Body { axis: if b.parent == Some(0) { 0 } else { b.axis }, ..b.clone() });
+    d.bodies = abducting.collect();
+    let (np, nq) = (d.positions(), d.orientations());
+    let n = np + nq;
+    let image = |i: usize| match i.checked_sub(np) {
+        Some(k) => {
+            let (from, sign) = d.swapped(k);
+            (np + from, sign)
+        }
+        None => (i, if i == 2 { -1.0 } else { 1.0 }),
+    };
+    let mut multibody = Multibody::new(&d);
+    for (q, ..) in states(&Amble) {
+        let exchanged: Vec<f64> = (0..nq).map(|k| d.swapped(k).1 * q[d.swapped(k).0]).collect();
+        let mut inertia = |q: &[f64]| {
+            multibody.set(q, &vec![0.0; nq], &vec![0.0; nq]);
+            filled(n * n, |o| multibody.inertia(o))
+        };
+        let (a, b) = (inertia(&q), inertia(&exchanged));
+        let back = (0..n * n).map(|e| {
+            let ((i, s), (j, t)) = (image(e / n), image(e % n));
+            s * t * a[i * n + j]
+        });
+        compare("A of the mirror image", &Amble, &back.collect::<Vec<_>>(), &b);
+    }
 }
 
 #[test]
