@@ -17,9 +17,11 @@ pub struct RobotFile {
     pub(super) source: Source,
     /// One for each of the robot's legs.
     pub(super) places: Vec<LegPlaces>,
-    /// Where each joint states its axis, or is named.
-    pub(super) axes: Vec<(String, Span)>,
+    pub(super) axes: Axes,
 }
+
+/// Where each joint states its axis, or is named.
+type Axes = Vec<(String, Span)>;
 
 /// Where a leg's parts stand in the file.
 #[derive(Clone, Debug)]
@@ -57,7 +59,7 @@ pub fn parse_robot(path: &str, text: &str) -> Result<RobotFile, Vec<Diagnostic>>
     }
 }
 
-fn read(text: &str, sink: &mut Sink) -> Option<(Robot, Vec<LegPlaces>, Vec<(String, Span)>)> {
+fn read(text: &str, sink: &mut Sink) -> Option<(Robot, Vec<LegPlaces>, Axes)> {
     let root = syntax::document(text, sink)?;
     let root = View::open(&root, &format::ROBOT, String::new(), 0..0, sink);
     let name = name::of_robot(&root, sink);
