@@ -187,6 +187,11 @@ impl Description {
         inner.map(|b| norm(&b.offset)).sum::<f64>() + norm(&leg.foot)
     }
 
+    /// Whether the joint connects a leg to the platform.
+    pub fn hangs_on_platform(&self, joint: usize) -> bool {
+        self.bodies.iter().any(|b| b.parent == Some(0) && b.coordinate == Some(joint))
+    }
+
     /// Where the coordinate `k` of q comes from when the legs swap roles: index and sign.
     pub fn swapped(&self, k: usize) -> (usize, f64) {
         let [a, b] = &self.legs;
