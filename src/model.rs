@@ -126,13 +126,9 @@ pub struct Operations {
 }
 
 impl Description {
-    /// Tells one robot and gait from another: a hash (FNV-1a) of all of its numbers.
+    /// Tells one robot and gait from another: a hash of all of its numbers.
     pub fn fingerprint(&self) -> String {
-        let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-        for byte in format!("{self:?}").bytes() {
-            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-        format!("{hash:016x}")
+        format!("{:016x}", hash(&format!("{self:?}")))
     }
 
     /// Number of joints.
@@ -205,6 +201,11 @@ impl Description {
         let mirrored = self.rotation == Rotation::Roll && self.bodies.iter().any(|b| turns(&b));
         (from, if mirrored { -1.0 } else { 1.0 })
     }
+}
+
+/// FNV-1a: the same on every machine and with every compiler.
+pub(crate) fn hash(text: &str) -> u64 {
+    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
 /// Generated dynamics of one gait. `leg` is 0 or 1: the leg in support, or the leg named.

@@ -120,6 +120,15 @@ pub struct SearchEntry {
     pub seed: u64,
 }
 
+impl LocalOptimum {
+    /// Whether both are one optimum, met from two sides.
+    fn same(&self, other: &LocalOptimum) -> bool {
+        let near = |a: f64, b: f64, share: f64| (a - b).abs() <= share * a.abs().max(b.abs());
+        let mut durations = self.durations.iter().zip(&other.durations);
+        near(self.cost, other.cost, 1e-5) && durations.all(|(a, b)| near(*a, *b, 1e-2))
+    }
+}
+
 impl GaitResult {
     /// Verifies what a search found: the best optimum whose receipt holds is the result.
     pub fn new(
@@ -178,21 +187,26 @@ impl GaitResult {
         }
     }
 
-    /// Takes over a better optimum that was found elsewhere; tells whether it is better and has a receipt.
-    pub fn improve(&mut self, gait: &dyn Gait, local: &Local) -> bool {
+    /// Takes in a local optimum that was found elsewhere: as the result if it is the best, else among the others.
+    /// Tells whether it was new; without a receipt it does not count.
+    pub fn join(&mut self, gait: &dyn Gait, local: &Local) -> bool {
         if !local.status.is_optimal() {
             return false;
         }
         let mut candidate = GaitResult::empty(gait, self.criterion, self.speed, self.search);
         candidate.take(gait, local);
         let Some(cost) = candidate.cost else { return false };
-        if self.cost.is_some_and(|known| cost >= known * (1.0 - 1e-6)) {
+        let new = LocalOptimum { cost, durations: candidate.durations.clone(), reached: 1 };
+        if self.local_optima.iter().any(|known| known.same(&new)) {
             return false;
         }
-        candidate.seconds = self.seconds;
-        candidate.local_optima.push(LocalOptimum { cost, durations: candidate.durations.clone(), reached: 1 });
-        candidate.local_optima.append(&mut self.local_optima);
-        *self = candidate;
+        self.local_optima.push(new);
+        self.local_optima.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        if self.cost.is_none_or(|known| cost < known) {
+            candidate.seconds = self.seconds;
+            candidate.local_optima = std::mem::take(&mut self.local_optima);
+            *self = candidate;
+        }
         true
     }
 

@@ -116,39 +116,3 @@ fn an_infeasible_speed_is_said_and_fails() {
     let nearest = result["nearest_speed"].as_f64().unwrap();
     assert!((1.0..1.3).contains(&nearest), "{nearest}");
 }
-
-#[test]
-fn a_sweep_writes_every_point_and_goes_on_where_it_stopped() {
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("sweep");
-    let arguments = [
-        "sweep",
-        "--gait",
-        "trot",
-        "--criterion",
-        "torque",
-        "--speeds",
-        "0.5,0.6",
-        "--starts",
-        "1",
-        "--out",
-        out.to_str().unwrap(),
-    ];
-    let first = piaffe(&arguments, "");
-    assert!(first.status.success(), "{}", text(&first.stderr));
-    assert!(text(&first.stdout).contains("trot     goes up to"), "{}", text(&first.stdout));
-    let file = out.join("trot-torque-0.6000.json");
-    let before = std::fs::read_to_string(&file).unwrap();
-    assert!(before.contains("\"optimal\""));
-    // One point is lost, the other stays as it was.
-    std::fs::remove_file(out.join("trot-torque-0.5000.json")).unwrap();
-    let second = piaffe(&arguments, "");
-    assert!(second.status.success());
-    assert!(out.join("trot-torque-0.5000.json").exists());
-    assert_eq!(before, std::fs::read_to_string(&file).unwrap());
-    let summary: Value = serde_json::from_str(&std::fs::read_to_string(out.join("sweep.json")).unwrap()).unwrap();
-    assert_eq!(summary["points"].as_array().unwrap().len(), 2);
-    let fastest = summary["maximum_speeds"][0]["speed"].as_f64().unwrap();
-    assert!((1.0..1.3).contains(&fastest), "{fastest}");
-    assert!(!summary["maximum_speeds"][0]["ended_by"].as_array().unwrap().is_empty());
-}

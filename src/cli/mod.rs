@@ -2,6 +2,7 @@
 
 mod dynamics;
 mod input;
+mod journal;
 mod main_job;
 mod optimize;
 mod output;

@@ -5,7 +5,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use piaffe::model::Gait;
 use piaffe::motion::Criterion;
 use piaffe::result::{GaitResult, Status};
-use piaffe::search::atlas::nearest_speed;
+use piaffe::search::fastest::nearest_speed;
 use piaffe::search::multi_start::{Settings, search};
 use std::time::Instant;
 

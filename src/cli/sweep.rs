@@ -1,155 +1,193 @@
-//! `piaffe sweep`: optima over speeds, resumed where an earlier run stopped.
+//! `piaffe sweep`: optima over speeds, greatest speeds and crossovers, resumed where an earlier run stopped.
 
-use super::optimize::progress;
-use super::{input, output};
-use indicatif::ProgressBar;
+use super::journal::{Folder, effort, file};
+use super::output;
+use indicatif::{ProgressBar, ProgressStyle};
 use piaffe::model::Gait;
 use piaffe::motion::Criterion;
-use piaffe::result::GaitResult;
-use piaffe::search::atlas::{Crossover, Journal, MaximumSpeed, crossovers, maximum_speed, sweep};
+use piaffe::result::{GaitResult, Status};
+use piaffe::search::atlas::{VISITS, sweep};
+use piaffe::search::crossover::{Comparison, compare};
+use piaffe::search::fastest::{MaximumSpeed, maximum_speed};
 use piaffe::search::multi_start::Settings;
 use rayon::prelude::*;
 use serde::Serialize;
-use std::path::{Path, PathBuf};
-use std::sync::Mutex;
+use std::io::Write;
+use std::path::Path;
 
-/// The summary of a sweep, as it is written beside its points.
-#[derive(Serialize)]
-struct Summary {
-    points: Vec<PointEntry>,
-    maximum_speeds: Vec<MaximumSpeed>,
-    crossovers: Vec<Crossover>,
-}
-
-#[derive(Serialize)]
-struct PointEntry {
-    gait: String,
-    criterion: Criterion,
-    speed: f64,
-    status: piaffe::result::Status,
-    cost: Option<f64>,
-    durations: Vec<f64>,
-    file: String,
-}
-
-/// Writes every result as it is found; finds those of earlier runs.
-struct Folder {
-    path: PathBuf,
-    settings: Settings,
-    bar: ProgressBar,
-    failure: Mutex<Option<anyhow::Error>>,
-}
-
-/// Name of a point's file.
-fn file(gait: &str, criterion: Criterion, speed: f64) -> String {
-    format!("{gait}-{}-{speed:.4}.json", criterion.name())
-}
-
-impl Journal for Folder {
-    fn known(&self, gait: &dyn Gait, criterion: Criterion, speed: f64) -> Option<GaitResult> {
-        let d = gait.description();
-        let path = self.path.join(file(d.gait, criterion, speed));
-        let result: GaitResult = path.exists().then(|| input::read_json(&path.to_string_lossy()).ok()).flatten()?;
-        // Another robot, version or search: to be done again.
-        let same = result.fingerprint == d.fingerprint()
-            && result.version == env!("CARGO_PKG_VERSION")
-            && result.search.seed == self.settings.seed
-            && result.speed == speed
-            && result.criterion == criterion;
-        same.then_some(result)
-    }
-
-    fn record(&self, result: &GaitResult) {
-        let path = self.path.join(file(&result.gait, result.criterion, result.speed));
-        if let (Err(error), Ok(mut failure)) = (output::write_json(&path, result), self.failure.lock()) {
-            failure.get_or_insert(error);
-        }
-    }
-
-    fn advance(&self) {
-        self.bar.inc(1);
-    }
+/// One gait over all speeds.
+struct Line {
+    gait: &'static dyn Gait,
+    maximum: Option<MaximumSpeed>,
+    /// Per criterion: the points of the sweep, then the one at the greatest speed.
+    results: Vec<Vec<GaitResult>>,
 }
 
 pub fn run(
     gaits: &[&'static dyn Gait],
     criteria: &[Criterion],
     speeds: &[f64],
-    folder: &Path,
+    path: &Path,
     settings: &Settings,
 ) -> anyhow::Result<bool> {
-    std::fs::create_dir_all(folder).map_err(|e| anyhow::anyhow!("cannot create {}: {e}", folder.display()))?;
-    let bar = progress((gaits.len() * criteria.len() * speeds.len()) as u64, "points");
-    let journal = Folder { path: folder.into(), settings: settings.clone(), bar, failure: Mutex::new(None) };
-    let lines: Vec<Vec<Vec<GaitResult>>> =
-        gaits.par_iter().map(|gait| sweep(*gait, criteria, speeds, settings, &journal)).collect();
-    journal.bar.set_message("greatest speeds");
-    let maximum_speeds: Vec<MaximumSpeed> = gaits
-        .par_iter()
-        .zip(&lines)
-        .filter_map(|(gait, lines)| maximum_speed(*gait, &lines.iter().flatten().collect::<Vec<_>>(), settings))
-        .collect();
-    journal.bar.finish_and_clear();
-    if let Some(error) = journal.failure.into_inner().ok().flatten() {
-        return Err(error);
-    }
-    let mut crossings = Vec::new();
+    let visits = VISITS * (criteria.len() * speeds.len()) as u64;
+    let folder = Folder::open(path, progress(gaits.iter().map(|g| visits * effort(*g)).sum()))?;
+    folder.compare(&gaits.iter().map(|g| *g as &dyn Gait).collect::<Vec<_>>(), criteria, speeds, settings);
+    let lines: Vec<Line> = gaits.par_iter().map(|gait| line(*gait, criteria, speeds, settings, &folder)).collect();
+    folder.bar.set_message("crossovers");
+    let mut comparisons = Vec::new();
     for c in 0..criteria.len() {
-        for a in 0..lines.len() {
-            for b in a + 1..lines.len() {
-                crossings.extend(crossovers(&lines[a][c], &lines[b][c]));
+        for (k, a) in lines.iter().enumerate() {
+            for b in &lines[k + 1..] {
+                comparisons.extend(compare([a.gait, b.gait], [&a.results[c], &b.results[c]], settings, &folder));
             }
         }
     }
-    table(&lines, criteria, speeds)?;
-    for m in &maximum_speeds {
-        let why = m.ended_by.first().map_or("no single constraint", String::as_str);
-        println!("{:<8} goes up to {:.3} m/s: then {why}", m.gait, m.speed);
+    folder.bar.finish_and_clear();
+    if let Some(error) = folder.failure() {
+        return Err(error);
     }
-    for x in &crossings {
-        println!("{:<8} {} overtakes {} at {:.2} m/s", x.criterion.name(), x.faster, x.slower, x.speed);
+    let all = || lines.iter().flat_map(|line| line.results.iter().flatten());
+    for result in all() {
+        folder.write(result)?;
     }
-    let points = lines
-        .iter()
-        .flatten()
-        .flatten()
-        .map(|r| PointEntry {
-            gait: r.gait.clone(),
+    output::write_json(&path.join("sweep.json"), &Summary::new(&lines, &comparisons))?;
+    output::quiet_when_closed(tell(&lines, criteria, speeds, &comparisons))?;
+    println!("results in {}", path.display());
+    Ok(all().any(GaitResult::is_optimal))
+}
+
+fn line(gait: &'static dyn Gait, criteria: &[Criterion], speeds: &[f64], settings: &Settings, folder: &Folder) -> Line {
+    let mut results = sweep(gait, criteria, speeds, settings, folder);
+    let maximum = maximum_speed(gait, &results.concat(), settings, folder);
+    for (line, criterion) in results.iter_mut().zip(criteria) {
+        let new = maximum.iter().filter(|m| !speeds.contains(&m.speed));
+        line.extend(new.map(|m| m.optimum(gait, *criterion, settings, folder)));
+        line.sort_by(|a, b| a.speed.total_cmp(&b.speed));
+    }
+    Line { gait, maximum, results }
+}
+
+/// A bar in units of effort, with what is left; hidden where standard error is no terminal.
+fn progress(effort: u64) -> ProgressBar {
+    let style = ProgressStyle::with_template("{msg} {bar:30} {percent} % {elapsed}, about {eta} left");
+    ProgressBar::new(effort).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())).with_message("optima")
+}
+
+/// What `sweep.json` holds.
+#[derive(Serialize)]
+struct Summary<'a> {
+    points: Vec<PointEntry<'a>>,
+    maximum_speeds: Vec<MaximumEntry<'a>>,
+    comparisons: &'a [Comparison],
+}
+
+#[derive(Serialize)]
+struct PointEntry<'a> {
+    gait: &'a str,
+    criterion: Criterion,
+    speed: f64,
+    status: Status,
+    cost: Option<f64>,
+    durations: &'a [f64],
+    /// Costs of all local optima that were found.
+    local_optima: Vec<f64>,
+    file: String,
+}
+
+#[derive(Serialize)]
+struct MaximumEntry<'a> {
+    gait: &'a str,
+    speed: f64,
+    ended_by: &'a [String],
+}
+
+impl<'a> Summary<'a> {
+    fn new(lines: &'a [Line], comparisons: &'a [Comparison]) -> Summary<'a> {
+        let point = |r: &'a GaitResult| PointEntry {
+            gait: &r.gait,
             criterion: r.criterion,
             speed: r.speed,
             status: r.status,
             cost: r.cost,
-            durations: r.durations.clone(),
+            durations: &r.durations,
+            local_optima: r.local_optima.iter().map(|o| o.cost).collect(),
             file: file(&r.gait, r.criterion, r.speed),
-        })
-        .collect();
-    output::write_json(&folder.join("sweep.json"), &Summary { points, maximum_speeds, crossovers: crossings })?;
-    println!("results in {}", folder.display());
-    Ok(lines.iter().flatten().flatten().any(GaitResult::is_optimal))
+        };
+        let maximum = |line: &'a Line| {
+            let MaximumSpeed { speed, ended_by, .. } = line.maximum.as_ref()?;
+            Some(MaximumEntry { gait: line.gait.description().gait, speed: *speed, ended_by })
+        };
+        Summary {
+            points: lines.iter().flat_map(|line| line.results.iter().flatten()).map(point).collect(),
+            maximum_speeds: lines.iter().filter_map(maximum).collect(),
+            comparisons,
+        }
+    }
+}
+
+fn tell(lines: &[Line], criteria: &[Criterion], speeds: &[f64], comparisons: &[Comparison]) -> std::io::Result<()> {
+    let mut out = std::io::stdout().lock();
+    out.write_all(table(lines, criteria, speeds).as_bytes())?;
+    for line in lines {
+        let name = line.gait.description().gait;
+        match &line.maximum {
+            Some(m) => {
+                let why = if m.ended_by.is_empty() { "no single constraint".into() } else { m.ended_by[0].clone() };
+                writeln!(out, "{name} goes up to {:.3} m/s; what stops it: {why}", m.speed)?;
+            }
+            None => writeln!(out, "{name}: no greatest speed found")?,
+        }
+    }
+    for comparison in comparisons {
+        writeln!(out, "{}", words(comparison, lines))?;
+    }
+    Ok(())
 }
 
 /// Costs over speeds, a column per gait and criterion; a dash where there is no optimum.
-fn table(lines: &[Vec<Vec<GaitResult>>], criteria: &[Criterion], speeds: &[f64]) -> anyhow::Result<()> {
-    use std::io::Write;
-    let mut out = std::io::stdout().lock();
+fn table(lines: &[Line], criteria: &[Criterion], speeds: &[f64]) -> String {
     let mut text = format!("{:>8}", "m/s");
-    for (c, criterion) in criteria.iter().enumerate() {
+    for criterion in criteria {
         for line in lines {
-            let gait = line[c].first().map_or("", |r| r.gait.as_str());
-            text += &format!(" {:>16}", format!("{gait} {}", criterion.name()));
+            text += &format!(" {:>16}", format!("{} {}", line.gait.description().gait, criterion.name()));
         }
     }
     text.push('\n');
-    for (k, speed) in speeds.iter().enumerate() {
+    for speed in speeds {
         text += &format!("{speed:>8.3}");
         for c in 0..criteria.len() {
             for line in lines {
-                text += &format!(" {:>16}", line[c][k].cost.map_or("-".into(), |cost| format!("{cost:.4}")));
+                let cost = line.results[c].iter().find(|r| r.speed == *speed).and_then(|r| r.cost);
+                text += &format!(" {:>16}", cost.map_or("-".into(), |cost| format!("{cost:.4}")));
             }
         }
         text.push('\n');
     }
-    output::quiet_when_closed(out.write_all(text.as_bytes()))
+    text
+}
+
+/// Which of two gaits is cheaper where, and why the comparison ends.
+fn words(comparison: &Comparison, lines: &[Line]) -> String {
+    let other = |name: &str| comparison.gaits.iter().find(|g| *g != name).map_or("", String::as_str).to_string();
+    let [_, last] = comparison.common;
+    let mut cheaper = comparison.cheaper.clone();
+    let mut text = format!("{}: ", comparison.criterion.name());
+    for x in &comparison.crossovers {
+        let [below, above] = x.bracket;
+        let at = match above - below < 1e-3 {
+            true => format!("at {:.3}", 0.5 * (below + above)),
+            false => format!("between {below:.3} and {above:.3}"),
+        };
+        text += &format!("{} overtakes {} {at} m/s; ", x.to, other(&x.to));
+        cheaper.clone_from(&x.to);
+    }
+    let ends = lines.iter().find(|line| line.maximum.as_ref().is_some_and(|m| m.speed == last));
+    let until = match ends.map(|line| line.gait.description().gait) {
+        Some(gait) => format!("until the {gait} ends"),
+        None => "to the end of the sweep".into(),
+    };
+    text + &format!("{cheaper} is cheaper than {} {until} at {last:.3} m/s", other(&cheaper))
 }
 
 /// `0.1..1.6:0.1` or `0.3,0.6,0.9`, in m/s.

@@ -1,7 +1,10 @@
 //! Finding optima: where to start, how to descend, and what to keep.
 
 pub mod atlas;
+pub mod crossover;
+pub mod fastest;
 pub mod guess;
+pub mod journal;
 pub mod local;
 pub mod multi_start;
 pub mod refine;

@@ -1,0 +1,135 @@
+//! How fast a gait goes: the greatest speed and what ends it, and the nearest speed that works.
+
+use super::atlas::{search_at, theta};
+use super::journal::{Journal, common, step};
+use super::local::{Conflict, Local, descend};
+use super::multi_start::{Settings, start};
+use crate::model::Gait;
+use crate::motion::Criterion;
+use crate::result::GaitResult;
+use crate::sqp::Control;
+use serde::{Deserialize, Serialize};
+
+/// Width to which a limiting speed is bisected, m/s.
+const BISECTION: f64 = 1e-3;
+/// First step beyond the last speed that works, m/s, and where stepping ends.
+const STEP: f64 = 0.1;
+const FASTEST: f64 = 10.0;
+
+/// How fast a gait goes.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct MaximumSpeed {
+    /// The greatest speed with a feasible motion, to 0.001 m/s, as far as local searches can tell.
+    pub speed: f64,
+    /// What conflicts just above it, weightiest first.
+    pub ended_by: Vec<String>,
+    /// A motion at this speed, as variables Θ; of no criterion.
+    theta: Vec<f64>,
+}
+
+/// Steps beyond the fastest of these results, then bisects. `None` if none is an optimum or there is no end.
+pub fn maximum_speed(
+    gait: &dyn Gait,
+    results: &[GaitResult],
+    settings: &Settings,
+    journal: &dyn Journal,
+) -> Option<MaximumSpeed> {
+    let fastest = results.iter().filter(|r| r.is_optimal()).max_by(|a, b| a.speed.total_cmp(&b.speed))?;
+    let from = theta(gait, fastest)?;
+    let name = format!("{} greatest speed", gait.description().gait);
+    step(journal, &name, &(common(gait, settings), fastest.speed, &from), || {
+        climb(gait, fastest.speed, &from, settings)
+    })
+    .0
+}
+
+fn climb(gait: &dyn Gait, speed: f64, from: &[f64], settings: &Settings) -> Option<MaximumSpeed> {
+    let mut good = speed;
+    let mut theta = from.to_vec();
+    let mut conflicts: Vec<Conflict> = Vec::new();
+    let mut bad = None;
+    while bad.is_none_or(|b| b - good > BISECTION) {
+        let speed = bad.map_or(good + STEP, |b| 0.5 * (good + b));
+        if speed > FASTEST {
+            return None;
+        }
+        let local = attempt(gait, speed, Some(&theta), settings);
+        if local.status.is_optimal() {
+            good = speed;
+            theta = local.theta;
+        } else {
+            bad = Some(speed);
+            conflicts = local.conflicts;
+        }
+    }
+    // What the speed itself and the cycle demand is the question; the answer is what stands against it.
+    let structural = ["mean speed", "closure of β", "closure of σ", "touchdown height"];
+    conflicts.retain(|c| !structural.contains(&c.label.name.as_str()));
+    conflicts.sort_by(|a, b| b.weight.total_cmp(&a.weight));
+    let ended_by = conflicts.iter().map(|c| format!("{} (half step {})", c.label.name, c.label.half_step)).collect();
+    Some(MaximumSpeed { speed: good, ended_by, theta })
+}
+
+impl MaximumSpeed {
+    /// The optimum at the greatest speed.
+    pub fn optimum(
+        &self,
+        gait: &dyn Gait,
+        criterion: Criterion,
+        settings: &Settings,
+        journal: &dyn Journal,
+    ) -> GaitResult {
+        search_at(gait, criterion, self.speed, settings, std::slice::from_ref(&self.theta), journal).0
+    }
+}
+
+/// A feasible motion at a speed, or the attempt that came closest.
+///
+/// Feasibility does not depend on the criterion; the smooth one is quicker.
+fn attempt(gait: &dyn Gait, speed: f64, from: Option<&[f64]>, settings: &Settings) -> Local {
+    let of = |theta: &[f64]| descend(gait, Criterion::Torque, speed, theta, &mut |_| Control::Continue);
+    let mut best = from.map(of);
+    for k in 0..settings.starts {
+        if best.as_ref().is_some_and(|b| b.status.is_optimal()) {
+            break;
+        }
+        let other = of(&start(gait, Criterion::Torque, speed, settings.seed, k));
+        let better = |b: &Local| other.status.is_optimal() || other.kkt.violation < b.kkt.violation;
+        if best.as_ref().is_none_or(better) {
+            best = Some(other);
+        }
+    }
+    best.unwrap_or_else(|| of(&start(gait, Criterion::Torque, speed, settings.seed, 0)))
+}
+
+/// For a speed without a feasible motion the nearest one with one, to 0.001 m/s, as far as local
+/// searches can tell. Tries speeds ever further off on both sides, then bisects from the motion found.
+pub fn nearest_speed(gait: &dyn Gait, speed: f64, settings: &Settings) -> Option<f64> {
+    let few = Settings { starts: settings.starts.min(3), ..settings.clone() };
+    let none = Settings { starts: 0, ..settings.clone() };
+    let (mut slower, mut faster) = (speed, speed);
+    for _ in 0..8 {
+        for (candidate, last) in [(slower / 1.5, slower), (faster * 1.5, faster)] {
+            if candidate > FASTEST {
+                continue;
+            }
+            let found = attempt(gait, candidate, None, &few);
+            if !found.status.is_optimal() {
+                continue;
+            }
+            let (mut good, mut bad, mut theta) = (candidate, last, found.theta);
+            while (bad - good).abs() > BISECTION {
+                let middle = 0.5 * (good + bad);
+                let local = attempt(gait, middle, Some(&theta), &none);
+                if local.status.is_optimal() {
+                    (good, theta) = (middle, local.theta);
+                } else {
+                    bad = middle;
+                }
+            }
+            return Some(good);
+        }
+        (slower, faster) = (slower / 1.5, faster * 1.5);
+    }
+    None
+}
