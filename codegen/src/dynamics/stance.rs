@@ -214,15 +214,21 @@ fn free_acceleration(model: &mut Model, stance: &Stance) -> Poly {
     model.ring.bind(-&(&rest * &over_f1))
 }
 
+/// An expression, linear in β̈, with a value for it: what remains without β̈, and β̈ times its factor. The
+/// balance that gives β̈ consists of the same remainders and factors.
+fn insert(model: &mut Model, p: &Poly, beta: &Poly) -> Poly {
+    let symbol = model.unactuated(2);
+    let factor = model.ring.derivative(p, symbol);
+    &model.without(p, &[symbol]) + &(&factor * beta)
+}
+
 fn inverse(model: &mut Model, stance: &Stance, leg: usize, platform: &[Poly]) -> Kernel {
     let beta = free_acceleration(model, stance);
-    let map = BTreeMap::from([(model.unactuated(2), beta)]);
-    let mut xdd: Vec<Poly> = platform.iter().map(|a| model.ring.substitute(a, &map)).collect();
-    let q = model.q(2);
-    xdd.extend(q.iter().map(|s| model.ring.substitute(&(*s).into(), &map)));
+    let mut xdd: Vec<Poly> = platform.iter().map(|a| insert(model, a, &beta)).collect();
+    xdd.extend(model.q(2).into_iter().map(|s| insert(model, &s.into(), &beta)).collect::<Vec<_>>());
     let joints = model.mechanism.joints.len();
-    let torques = stance.forces[..joints].iter().map(|f| model.ring.substitute(f, &map)).collect();
-    let reaction = stance.reaction.iter().map(|f| model.ring.substitute(f, &map)).collect();
+    let torques = stance.forces[..joints].iter().map(|f| insert(model, f, &beta)).collect();
+    let reaction = stance.reaction.iter().map(|f| insert(model, f, &beta)).collect();
     Kernel::new(
         format!("inverse{}", leg + 1),
         "Inverse dynamics in single support: full Ẍ (β̈ by eq. 10), the torque of every joint and the reaction, from Q̈.",

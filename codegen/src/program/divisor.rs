@@ -4,6 +4,7 @@
 //! product is the sum of its factors' hashes, so that a quotient's is a difference. Where a hash
 //! decides about a rewriting, the factors themselves are compared too.
 
+use super::market::Origin;
 use super::{Id, Sum, Term};
 use smallvec::SmallVec;
 
@@ -42,6 +43,8 @@ pub struct Item {
     pub coefficient: f64,
     pub factors: Factors,
     pub hash: u64,
+    /// Which nodes can occur among the factors: a bit per node modulo 64.
+    marks: u64,
 }
 
 /// SplitMix64: spreads consecutive numbers over all bits.
@@ -59,6 +62,11 @@ pub fn hash_of(factors: &[Id]) -> u64 {
     factors.iter().fold(0, |sum, id| sum.wrapping_add(hash_of_node(*id)))
 }
 
+/// Key of the divisor `size · a`.
+pub fn scaled_key(a: Id, size: f64) -> u64 {
+    mix(hash_of_node(a) ^ mix(rounded(size)))
+}
+
 /// A coefficient without its last bits, which are rounding.
 pub fn rounded(value: f64) -> u64 {
     const NOISE: u32 = 8;
@@ -69,8 +77,13 @@ fn is_unit(value: f64) -> bool {
     rounded(value.abs()) == rounded(1.0)
 }
 
+/// ±1 where `value` is that but for rounding.
+pub fn exact(value: f64) -> f64 {
+    if is_unit(value) { value.signum() } else { value }
+}
+
 /// Multiplications of a term.
-fn cost(coefficient: f64, factors: usize) -> i32 {
+pub fn cost(coefficient: f64, factors: usize) -> i32 {
     if factors == 0 { 0 } else { factors as i32 - 1 + i32::from(coefficient.abs() != 1.0) }
 }
 
@@ -78,7 +91,8 @@ impl Item {
     pub fn new(coefficient: f64, mut factors: Factors) -> Item {
         factors.sort_unstable();
         let hash = hash_of(&factors);
-        Item { coefficient, factors, hash }
+        let marks = factors.iter().fold(0, |marks, id| marks | 1 << (id % 64));
+        Item { coefficient, factors, hash, marks }
     }
 
     pub fn cost(&self) -> i32 {
@@ -92,7 +106,7 @@ impl Item {
             let repeated = i > 0 && f[i - 1] == *a;
             if !repeated && self.coefficient.abs() != 1.0 {
                 let size = self.coefficient.abs();
-                let key = mix(hash_of_node(*a) ^ mix(rounded(size)));
+                let key = scaled_key(*a, size);
                 found(Offer { key, cost: [1; 2], saved: [1; 2], source: Source::Scaled(*a, size) });
             }
             for (j, b) in f.iter().enumerate().skip(i + 1) {
@@ -111,7 +125,7 @@ impl Item {
         let (mut shared, mut count) = (0u64, 0);
         let (a, b) = (&self.factors[..], &other.factors[..]);
         let (mut i, mut j) = (0, 0);
-        while i < a.len() && j < b.len() {
+        while self.marks & other.marks != 0 && i < a.len() && j < b.len() {
             match a[i].cmp(&b[j]) {
                 std::cmp::Ordering::Equal => {
                     shared = shared.wrapping_add(hash_of_node(a[i]));
@@ -126,8 +140,7 @@ impl Item {
         let (h1, h2) = (self.hash.wrapping_sub(shared), other.hash.wrapping_sub(shared));
         let (x, y, h1, h2) = if h1 <= h2 { (self, other, h1, h2) } else { (other, self, h2, h1) };
         let (n1, n2) = (x.factors.len() - count, y.factors.len() - count);
-        let ratio = y.coefficient / x.coefficient;
-        let ratio = if is_unit(ratio) { ratio.signum() } else { ratio };
+        let ratio = exact(y.coefficient / x.coefficient);
         let key = mix(h1.wrapping_add(mix(h2 ^ mix(rounded(ratio)))) ^ 2);
         let products = n1.saturating_sub(1) as i32 + n2.saturating_sub(1) as i32 + 1;
         let scale = |factors: usize| i32::from(factors > 0 && !is_unit(ratio));
@@ -142,6 +155,15 @@ impl Item {
 }
 
 impl Offer<'_> {
+    /// How to find it again, in the terms numbered `first` and `second`.
+    pub fn origin(&self, first: u32, second: u32) -> Origin {
+        match self.source {
+            Source::Pair(..) => Origin::Pair(first, second),
+            Source::Product(a, b) => Origin::Product(a, b),
+            Source::Scaled(a, _) => Origin::Scaled(a, first),
+        }
+    }
+
     pub fn divisor(&self) -> Divisor {
         match self.source {
             Source::Pair(x, y, ratio) => {
@@ -177,12 +199,21 @@ pub fn without(factors: &[Id], remove: &[Id]) -> Option<Factors> {
 }
 
 impl Divisor {
-    /// The sum that defines it; `unit` says which part of a pair has the coefficient 1.
-    pub fn definition(&self, unit: usize) -> Sum {
-        let term = |coefficient: f64, factors: &[Id]| Term { coefficient, factors: Factors::from_slice(factors) };
+    /// The nodes that it is made of.
+    pub fn nodes(&self) -> impl Iterator<Item = Id> {
+        let (nodes, more): (&[Id], &[Id]) = match self {
+            Divisor::Pair { first, second, .. } => (first, second),
+            Divisor::Product(a, b) => (std::slice::from_ref(a), std::slice::from_ref(b)),
+            Divisor::Scaled(a, _) => (std::slice::from_ref(a), &[]),
+        };
+        nodes.iter().chain(more).copied()
+    }
+
+    /// The sum that defines it; a pair's first part gets the coefficient `scale`.
+    pub fn definition(&self, scale: f64) -> Sum {
+        let term = |coefficient: f64, factors: &[Id]| Term { coefficient: exact(coefficient), factors: factors.into() };
         match self {
-            Divisor::Pair { first, second, ratio } if unit == 0 => vec![term(1.0, first), term(*ratio, second)],
-            Divisor::Pair { first, second, ratio } => vec![term(1.0 / ratio, first), term(1.0, second)],
+            Divisor::Pair { first, second, ratio } => vec![term(scale, first), term(ratio * scale, second)],
             Divisor::Product(a, b) => vec![term(1.0, &[*a, *b])],
             Divisor::Scaled(a, size) => vec![term(*size, &[*a])],
         }

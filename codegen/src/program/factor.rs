@@ -5,281 +5,210 @@
 //! product of two nodes; or a scaled node, `k·a`. The divisor that saves most operations over all
 //! sums becomes a node of its own, and the search goes on until none saves any.
 
-use super::divisor::{Divisor, Factors, Item, Offer, hash_of, rounded, without};
+use super::divisor::{Divisor, Factors, Item, cost, exact, hash_of, rounded, scaled_key, without};
+use super::market::{Best, Market, Origin};
 use super::{Id, Node, Program, Term};
 use smallvec::SmallVec;
-use std::cmp::Reverse;
-use std::collections::{BinaryHeap, HashMap};
-use std::hash::{BuildHasherDefault, Hasher};
-
-/// Keys are hashes already. No random seed: same input, same program.
-#[derive(Default)]
-struct Identity(u64);
-
-impl Hasher for Identity {
-    fn finish(&self) -> u64 {
-        self.0
-    }
-
-    fn write(&mut self, _: &[u8]) {
-        unreachable!("keys are u64");
-    }
-
-    fn write_u64(&mut self, key: u64) {
-        self.0 = key;
-    }
-}
-
-struct Candidate {
-    cost: [i32; 2],
-    /// What its occurrences save in all, for either choice of the coefficient that is 1.
-    saved: [i32; 2],
-    /// What occurrences that overlap, so that not all can be replaced, were found to count too much.
-    overcount: i32,
-    /// The gain of its highest entry in the queue.
-    queued: i32,
-    /// Sums in which it occurs or has occurred.
-    sums: SmallVec<[u32; 4]>,
-    /// Known once it saves something.
-    divisor: Option<Box<Divisor>>,
-}
-
-impl Candidate {
-    fn unit(&self) -> usize {
-        usize::from(self.saved[1] - self.cost[1] > self.saved[0] - self.cost[0])
-    }
-
-    /// Operations saved if all occurrences are replaced, less what the divisor costs.
-    fn gain(&self) -> i32 {
-        let unit = self.unit();
-        self.saved[unit] - self.cost[unit] - self.overcount
-    }
-}
-
-/// All divisors that the sums offer.
-#[derive(Default)]
-struct Market {
-    ids: HashMap<u64, u32, BuildHasherDefault<Identity>>,
-    candidates: Vec<Candidate>,
-    /// By gain, then the oldest first. Entries may be out of date: too high, never too low.
-    queue: BinaryHeap<(i32, Reverse<u32>)>,
-    /// Whether the queue is kept up to date.
-    open: bool,
-}
+use std::collections::HashMap;
 
 struct Search<'a> {
     nodes: &'a mut Vec<Node>,
-    sums: Vec<Vec<Item>>,
+    /// All terms there ever were.
+    items: Vec<Item>,
+    /// Indices of the terms of each sum.
+    sums: Vec<Vec<u32>>,
+    /// Sums in which a node occurs or has occurred.
+    places: Vec<Vec<u32>>,
     market: Market,
 }
 
 /// An occurrence in a sum: which terms go, what takes their place.
 struct Rewrite {
+    sum: usize,
     gone: SmallVec<[usize; 2]>,
-    item: Item,
+    /// Of the new term, if the divisor's first part has the coefficient 1.
+    coefficient: f64,
+    factors: Factors,
 }
 
 /// Rewrites the sums of `program` over shared new nodes.
 pub fn factor(program: &mut Program) {
-    let sums = program.sums.iter().map(|s| s.iter().map(|t| Item::new(t.coefficient, t.factors.clone())).collect());
-    let mut search = Search { sums: sums.collect(), nodes: &mut program.nodes, market: Market::default() };
-    for sum in 0..search.sums.len() {
-        let items = std::mem::take(&mut search.sums[sum]);
-        items.into_iter().for_each(|item| search.insert(sum, item));
+    let places = vec![Vec::new(); program.nodes.len()];
+    let sums = vec![Vec::new(); program.sums.len()];
+    let mut search = Search { nodes: &mut program.nodes, items: Vec::new(), sums, places, market: Market::new() };
+    for (sum, terms) in program.sums.iter().enumerate() {
+        terms.iter().for_each(|t| search.insert(sum, Item::new(t.coefficient, t.factors.clone())));
     }
     search.market.open();
     while let Some(best) = search.market.best() {
-        search.extract(best);
+        search.extract(&best);
     }
-    let sort = |items: Vec<Item>| {
-        let mut sum: Vec<Term> =
-            items.into_iter().map(|i| Term { coefficient: i.coefficient, factors: i.factors }).collect();
-        sum.sort_by(|a, b| a.factors.cmp(&b.factors));
-        sum
+    let term = |i: &u32| {
+        let item = &search.items[*i as usize];
+        Term { coefficient: item.coefficient, factors: item.factors.clone() }
     };
-    program.sums = search.sums.into_iter().map(sort).collect();
+    program.sums = search.sums.iter().map(|items| items.iter().map(term).collect()).collect();
+    program.sums.iter_mut().for_each(|sum| sum.sort_by(|a, b| a.factors.cmp(&b.factors)));
     merge_equal_sums(program);
-}
-
-impl Market {
-    /// Adds an occurrence in `sum`.
-    fn add(&mut self, sum: usize, offer: &Offer) {
-        let id = *self.ids.entry(offer.key).or_insert_with(|| {
-            let (cost, sums) = (offer.cost, SmallVec::new());
-            self.candidates.push(Candidate { cost, saved: [0; 2], overcount: 0, queued: 0, sums, divisor: None });
-            self.candidates.len() as u32 - 1
-        });
-        let candidate = &mut self.candidates[id as usize];
-        candidate.saved[0] += offer.saved[0];
-        candidate.saved[1] += offer.saved[1];
-        if candidate.sums.last() != Some(&(sum as u32)) {
-            candidate.sums.push(sum as u32);
-        }
-        if candidate.gain() > 0 {
-            candidate.divisor.get_or_insert_with(|| Box::new(offer.divisor()));
-            if self.open {
-                self.queue(id);
-            }
-        }
-    }
-
-    /// Takes an occurrence back.
-    fn take(&mut self, offer: &Offer) {
-        if let Some(id) = self.ids.get(&offer.key) {
-            let saved = &mut self.candidates[*id as usize].saved;
-            saved[0] -= offer.saved[0];
-            saved[1] -= offer.saved[1];
-        }
-    }
-
-    fn open(&mut self) {
-        self.open = true;
-        (0..self.candidates.len() as u32).for_each(|id| self.queue(id));
-    }
-
-    fn queue(&mut self, id: u32) {
-        let candidate = &mut self.candidates[id as usize];
-        let gain = candidate.gain();
-        if gain > candidate.queued {
-            candidate.queued = gain;
-            self.queue.push((gain, Reverse(id)));
-        }
-    }
-
-    /// The divisor that saves most.
-    fn best(&mut self) -> Option<u32> {
-        while let Some((gain, Reverse(id))) = self.queue.pop() {
-            let candidate = &mut self.candidates[id as usize];
-            if gain == candidate.queued {
-                candidate.queued = 0;
-                if candidate.gain() == gain {
-                    return Some(id);
-                }
-                self.queue(id);
-            }
-        }
-        None
-    }
 }
 
 impl Search<'_> {
     /// Adds a term to a sum, with all that it offers.
     fn insert(&mut self, sum: usize, item: Item) {
-        item.offers(|offer| self.market.add(sum, &offer));
+        let new = self.items.len() as u32;
+        item.offers(|offer| self.market.add(&offer, offer.origin(new, new)));
         for other in &self.sums[sum] {
-            self.market.add(sum, &other.offer_with(&item));
+            let offer = self.items[*other as usize].offer_with(&item);
+            self.market.add(&offer, offer.origin(*other, new));
         }
-        self.sums[sum].push(item);
+        for id in &item.factors {
+            let places = &mut self.places[*id as usize];
+            if places.last() != Some(&(sum as u32)) {
+                places.push(sum as u32);
+            }
+        }
+        self.items.push(item);
+        self.sums[sum].push(new);
     }
 
     /// Takes a term out of a sum, with all that it offered.
     fn remove(&mut self, sum: usize, at: usize) {
-        let item = self.sums[sum].swap_remove(at);
+        let item = &self.items[self.sums[sum].swap_remove(at) as usize];
         item.offers(|offer| self.market.take(&offer));
         for other in &self.sums[sum] {
-            self.market.take(&other.offer_with(&item));
+            self.market.take(&self.items[*other as usize].offer_with(item));
         }
     }
 
-    fn extract(&mut self, id: u32) {
-        let candidate = &mut self.market.candidates[id as usize];
-        let (unit, expected) = (candidate.unit(), candidate.gain());
-        let Some(divisor) = candidate.divisor.clone() else { return };
-        candidate.sums.sort_unstable();
-        candidate.sums.dedup();
-        let node = self.nodes.len() as Id;
-        let found: Vec<(usize, Vec<Rewrite>)> = candidate
-            .sums
-            .iter()
-            .map(|s| (*s as usize, occurrences(&self.sums[*s as usize], &divisor, unit, node)))
-            .filter(|(_, list)| !list.is_empty())
-            .collect();
-        let saved: i32 = found.iter().flat_map(|(s, list)| list.iter().map(|r| r.saved(&self.sums[*s]))).sum();
-        // Occurrences can overlap: then the gain was counted too high.
-        let gain = saved - candidate.cost[unit];
-        if gain < expected {
-            candidate.overcount += expected - gain;
-            return self.market.queue(id);
+    fn divisor(&self, origin: Origin) -> Divisor {
+        let item = |i: u32| &self.items[i as usize];
+        match origin {
+            Origin::Pair(i, j) => item(i).offer_with(item(j)).divisor(),
+            Origin::Product(a, b) => Divisor::Product(a, b),
+            Origin::Scaled(a, i) => Divisor::Scaled(a, item(i).coefficient.abs()),
         }
-        candidate.sums = found.iter().map(|(s, _)| *s as u32).collect();
-        for (sum, list) in found {
-            let mut gone: Vec<usize> = list.iter().flat_map(|r| r.gone.iter().copied()).collect();
-            gone.sort_unstable();
-            gone.into_iter().rev().for_each(|at| self.remove(sum, at));
-            list.into_iter().for_each(|r| self.insert(sum, r.item));
+    }
+
+    fn extract(&mut self, best: &Best) {
+        let divisor = self.divisor(best.origin);
+        let node = self.nodes.len() as Id;
+        let rarest = divisor.nodes().min_by_key(|id| self.places[*id as usize].len());
+        let mut places = rarest.map_or(Vec::new(), |id| self.places[id as usize].clone());
+        places.sort_unstable();
+        places.dedup();
+        let mut found = Vec::new();
+        places.into_iter().for_each(|s| self.occurrences(s as usize, &divisor, node, &mut found));
+        let (scale, gain) = self.scale(&divisor, &found);
+        // Occurrences can overlap: then the gain was counted too high.
+        if gain < best.gain {
+            return self.market.correct(best, gain);
         }
         self.nodes.push(Node::Value(self.sums.len()));
+        self.places.push(Vec::new());
+        for list in found.chunk_by(|a, b| a.sum == b.sum) {
+            let mut gone: Vec<usize> = list.iter().flat_map(|r| r.gone.iter().copied()).collect();
+            gone.sort_unstable();
+            gone.into_iter().rev().for_each(|at| self.remove(list[0].sum, at));
+            list.iter().for_each(|r| self.insert(r.sum, Item::new(exact(r.coefficient / scale), r.factors.clone())));
+        }
+        let new = self.sums.len();
         self.sums.push(Vec::new());
-        let new = self.sums.len() - 1;
-        for term in divisor.definition(unit) {
+        for term in divisor.definition(scale) {
             self.insert(new, Item::new(term.coefficient, term.factors));
         }
     }
-}
 
-impl Rewrite {
-    fn saved(&self, sum: &[Item]) -> i32 {
-        let before: i32 = self.gone.iter().map(|i| sum[*i].cost()).sum();
-        before + self.gone.len() as i32 - 1 - self.item.cost()
+    /// The coefficient of a divisor's first part with which it saves most, and how much that is.
+    fn scale(&self, divisor: &Divisor, found: &[Rewrite]) -> (f64, i32) {
+        let Divisor::Pair { first, second, ratio } = divisor else { return (1.0, self.gain(divisor, found, 1.0)) };
+        let mut scales = vec![1.0, 1.0 / ratio.abs()];
+        if exact(*ratio).abs() != 1.0 && (first.len() == 1 || second.len() == 1) {
+            scales.extend(found.iter().map(|r| r.coefficient.abs()));
+            scales.dedup_by_key(|scale| rounded(*scale));
+        }
+        let gains = scales.into_iter().map(|scale| (scale, self.gain(divisor, found, scale)));
+        gains.reduce(|best, next| if next.1 > best.1 { next } else { best }).unwrap_or((1.0, 0))
     }
-}
 
-/// Occurrences of `divisor` that do not overlap.
-fn occurrences(sum: &[Item], divisor: &Divisor, unit: usize, node: Id) -> Vec<Rewrite> {
-    let mut found = Vec::new();
-    match divisor {
-        Divisor::Product(a, b) => {
-            for (i, item) in sum.iter().enumerate() {
-                let mut factors = item.factors.clone();
-                let mut times = 0;
-                while let Some(rest) = without(&factors, &[*a, *b]) {
-                    factors = rest;
-                    times += 1;
-                }
-                if times > 0 {
-                    factors.extend(std::iter::repeat_n(node, times));
-                    found
-                        .push(Rewrite { gone: SmallVec::from_slice(&[i]), item: Item::new(item.coefficient, factors) });
-                }
+    /// Operations saved if the divisor replaces all that was found.
+    fn gain(&self, divisor: &Divisor, found: &[Rewrite], scale: f64) -> i32 {
+        let mut gain = 0;
+        for r in found {
+            let before: i32 = r.gone.iter().map(|at| self.items[self.sums[r.sum][*at] as usize].cost()).sum();
+            gain += before + r.gone.len() as i32 - 1 - cost(exact(r.coefficient / scale), r.factors.len());
+        }
+        let definition = divisor.definition(scale);
+        gain -= definition.iter().map(|t| t.cost() as i32).sum::<i32>() + definition.len() as i32 - 1;
+        if definition.len() == 2 {
+            // A part that is needed elsewhere too costs nothing here.
+            for part in definition.iter().filter(|t| t.factors.len() == 1 && t.coefficient.abs() != 1.0) {
+                let here = found.iter().filter(|r| rounded(r.coefficient.abs()) == rounded(scale)).count() as i32;
+                gain += i32::from(self.market.saved(scaled_key(part.factors[0], part.coefficient.abs())) > here);
             }
         }
-        Divisor::Scaled(a, size) => {
-            for (i, item) in sum.iter().enumerate() {
-                let coefficient = item.coefficient.abs();
-                if coefficient == 1.0 || rounded(coefficient) != rounded(*size) {
-                    continue;
-                }
-                if let Some(mut rest) = without(&item.factors, &[*a]) {
-                    rest.push(node);
-                    let item = Item::new(item.coefficient.signum(), rest);
-                    found.push(Rewrite { gone: SmallVec::from_slice(&[i]), item });
+        gain
+    }
+
+    /// Occurrences of `divisor` in a sum that do not overlap.
+    fn occurrences(&self, sum: usize, divisor: &Divisor, node: Id, found: &mut Vec<Rewrite>) {
+        let items = || self.sums[sum].iter().map(|i| &self.items[*i as usize]).enumerate();
+        match divisor {
+            Divisor::Product(a, b) => {
+                for (i, item) in items() {
+                    let mut factors = item.factors.clone();
+                    let mut times = 0;
+                    while let Some(rest) = without(&factors, &[*a, *b]) {
+                        factors = rest;
+                        times += 1;
+                    }
+                    if times > 0 {
+                        factors.extend(std::iter::repeat_n(node, times));
+                        found.push(Rewrite {
+                            sum,
+                            gone: [i].as_slice().into(),
+                            coefficient: item.coefficient,
+                            factors,
+                        });
+                    }
                 }
             }
-        }
-        Divisor::Pair { first, second, ratio } => {
-            let change = hash_of(second).wrapping_sub(hash_of(first));
-            let mut used = vec![false; sum.len()];
-            for (i, item) in sum.iter().enumerate() {
-                let Some(common) = without(&item.factors, first).filter(|_| !used[i]) else { continue };
-                let partner = item.hash.wrapping_add(change);
-                let fits = |j: usize, other: &Item| {
-                    other.hash == partner
-                        && !used[j]
-                        && j != i
-                        && rounded(other.coefficient / item.coefficient) == rounded(*ratio)
-                        && without(&other.factors, second).as_ref() == Some(&common)
-                };
-                if let Some(j) = sum.iter().enumerate().position(|(j, other)| fits(j, other)) {
-                    (used[i], used[j]) = (true, true);
-                    let mut factors = common;
-                    factors.push(node);
-                    let coefficient = if unit == 0 { item.coefficient } else { sum[j].coefficient };
-                    found.push(Rewrite { gone: SmallVec::from_slice(&[i, j]), item: Item::new(coefficient, factors) });
+            Divisor::Scaled(a, size) => {
+                for (i, item) in items() {
+                    let coefficient = item.coefficient.abs();
+                    if coefficient == 1.0 || rounded(coefficient) != rounded(*size) {
+                        continue;
+                    }
+                    if let Some(mut factors) = without(&item.factors, &[*a]) {
+                        factors.push(node);
+                        let coefficient = item.coefficient.signum();
+                        found.push(Rewrite { sum, gone: [i].as_slice().into(), coefficient, factors });
+                    }
+                }
+            }
+            Divisor::Pair { first, second, ratio } => {
+                let change = hash_of(second).wrapping_sub(hash_of(first));
+                let mut used = vec![false; self.sums[sum].len()];
+                for (i, item) in items() {
+                    let Some(common) = without(&item.factors, first).filter(|_| !used[i]) else { continue };
+                    let partner = item.hash.wrapping_add(change);
+                    let fits = |j: usize, other: &Item| {
+                        other.hash == partner
+                            && !used[j]
+                            && j != i
+                            && rounded(other.coefficient / item.coefficient) == rounded(*ratio)
+                            && without(&other.factors, second).as_ref() == Some(&common)
+                    };
+                    if let Some((j, _)) = items().find(|(j, other)| fits(*j, other)) {
+                        (used[i], used[j]) = (true, true);
+                        let mut factors = common;
+                        factors.push(node);
+                        let gone = [i, j].as_slice().into();
+                        found.push(Rewrite { sum, gone, coefficient: item.coefficient, factors });
+                    }
                 }
             }
         }
     }
-    found
 }
 
 /// Sums that became equal are computed once.

@@ -2,10 +2,15 @@
 
 mod divisor;
 mod factor;
+mod group;
 mod lower;
+mod market;
 
 pub use factor::factor;
 
+use crate::dynamics::Kernel;
+use crate::expr::Ring;
+use group::Groups;
 use smallvec::SmallVec;
 use std::collections::BTreeMap;
 
@@ -62,12 +67,39 @@ impl Term {
     }
 }
 
+/// Least sizes of the groups that are computed once before factoring: no size is best for all kernels.
+const LEAST_GROUP: [usize; 6] = [6, 2, 3, 4, 9, usize::MAX];
+
+/// Pairs of terms that attempts may look at, the first one apart: a bound on the time that a kernel takes.
+const PAIRS: usize = 15_000;
+
 impl Program {
-    /// Lowers a kernel and factors it.
-    pub fn new(ring: &crate::expr::Ring, kernel: &crate::dynamics::Kernel) -> Program {
-        let mut program = lower::lower(ring, kernel);
-        factor(&mut program);
-        program
+    /// Lowers a kernel and factors it in several ways; the one with the fewest operations stays.
+    pub fn new(ring: &Ring, kernel: &Kernel) -> Program {
+        let lowered = lower::lower(ring, kernel);
+        let groups = Groups::new(&lowered);
+        let mut tried = Vec::new();
+        let mut pairs = 0;
+        let mut best: Option<(usize, Program)> = None;
+        for least in LEAST_GROUP {
+            let count = groups.count(least);
+            if tried.contains(&count) {
+                continue;
+            }
+            tried.push(count);
+            let mut program = groups.apply(&lowered, least);
+            let more: usize = program.sums.iter().map(|s| s.len() * s.len() / 2).sum();
+            if best.is_some() && pairs + more > PAIRS {
+                continue;
+            }
+            pairs += more;
+            factor(&mut program);
+            let flops = program.operations().flops;
+            if best.as_ref().is_none_or(|(least, _)| flops < *least) {
+                best = Some((flops, program));
+            }
+        }
+        best.map_or(lowered, |(_, program)| program)
     }
 
     /// Nodes in an order in which each comes after all that it needs; unused ones are left out.
