@@ -126,9 +126,14 @@ pub struct Label {
 
 impl<'a> Cycle<'a> {
     pub fn new(gait: &'a dyn Gait, criterion: Criterion, speed: f64) -> Cycle<'a> {
+        Self::with_elements(gait, criterion, speed, ELEMENTS)
+    }
+
+    /// The same with another number of elements per half step: few will do far from an optimum.
+    pub fn with_elements(gait: &'a dyn Gait, criterion: Criterion, speed: f64, elements: usize) -> Cycle<'a> {
         let d = gait.description();
         let variables = Variables::new(d);
-        let phases: Vec<Phase> = (0..d.phases()).map(|k| Phase::new(d, k, ELEMENTS)).collect();
+        let phases: Vec<Phase> = (0..d.phases()).map(|k| Phase::new(d, k, elements)).collect();
         let impact = ImpactConstraints::new(d);
         let n = variables.total();
         Cycle {

@@ -1,5 +1,6 @@
 //! One local optimum: from a start to a motion that satisfies every constraint between nodes too.
 
+use super::nearest::nearest;
 use super::refine::{dips, probe};
 use crate::cycle::{Cycle, Label};
 use crate::model::Gait;
@@ -39,24 +40,57 @@ pub struct Conflict {
 /// optimum a kink tells a step more than is true.
 const SMOOTHING: [f64; 2] = [0.12, 0.012];
 
+/// Elements per half step while the optimum is far.
+const COARSE: usize = 4;
+
 /// Options of the solver for a problem of this kind.
 pub fn options(cycle: &Cycle) -> Options {
     Options {
         tolerance: 1e-6,
         feasibility: 1e-8,
         iteration_limit: 400,
+        step_limit: 1.0,
         scale: Some(cycle.scale()),
         ..Options::default()
     }
 }
 
 /// Options of the solver where an approximate solution will do.
-fn rough(cycle: &Cycle) -> Options {
-    Options { tolerance: 1e-2, feasibility: 1e-3, ..options(cycle) }
+fn rough(options: &Options) -> Options {
+    Options { tolerance: 1e-2, feasibility: 1e-3, ..options.clone() }
 }
 
-/// Minimizes from `start`; `observe` sees every iteration and can stop it.
+/// Minimizes from `start`, which may be far from any motion: the nearest motion first, then an approximate optimum on a
+/// coarse mesh, then the optimum. `observe` sees every iteration and can stop it.
 pub fn descend(
+    gait: &dyn Gait,
+    criterion: Criterion,
+    speed: f64,
+    start: &[f64],
+    observe: &mut dyn FnMut(&sqp::Iteration) -> Control,
+) -> Local {
+    let mut cycle = Cycle::with_elements(gait, criterion, speed, COARSE);
+    let options = options(&cycle);
+    let nearest = nearest(&mut cycle, start, &options, observe);
+    let mut theta = nearest.x;
+    let mut iterations = nearest.iterations;
+    let smoothing: &[f64] = match criterion {
+        Criterion::Energy => &SMOOTHING,
+        Criterion::Torque => &[0.0],
+    };
+    for share in smoothing {
+        let d = gait.description();
+        cycle.smoothing = share * d.total_mass() * d.gravity * speed;
+        let solution = sqp::minimize(&mut cycle, &theta, &rough(&options), observe);
+        iterations += solution.iterations;
+        theta = solution.x;
+    }
+    let local = follow(gait, criterion, speed, &theta, observe);
+    Local { iterations: iterations + local.iterations, ..local }
+}
+
+/// Minimizes from a `start` near an optimum: that of a neighbouring speed, say.
+pub fn follow(
     gait: &dyn Gait,
     criterion: Criterion,
     speed: f64,
@@ -66,21 +100,8 @@ pub fn descend(
     let mut cycle = Cycle::new(gait, criterion, speed);
     let mut fine = probe(&cycle);
     let options = options(&cycle);
-    let mut start = start.to_vec();
-    let mut iterations = 0;
-    if criterion == Criterion::Energy {
-        let d = gait.description();
-        for share in SMOOTHING {
-            cycle.smoothing = share * d.total_mass() * d.gravity * speed;
-            let options = rough(&cycle);
-            let solution = sqp::minimize(&mut cycle, &start, &options, observe);
-            iterations += solution.iterations;
-            start = solution.x;
-        }
-        cycle.smoothing = 0.0;
-    }
-    let mut solution = sqp::minimize(&mut cycle, &start, &options, observe);
-    iterations += solution.iterations;
+    let mut solution = sqp::minimize(&mut cycle, start, &options, observe);
+    let mut iterations = solution.iterations;
     let mut violation = f64::INFINITY;
     let mut instants = vec![Vec::new(); cycle.phases()];
     for _ in 0..ROUNDS {

@@ -7,4 +7,5 @@ pub mod guess;
 pub mod journal;
 pub mod local;
 pub mod multi_start;
+mod nearest;
 pub mod refine;
