@@ -71,7 +71,6 @@ pub struct State {
 pub struct Instants {
     pub quantities: Quantities,
     layout: Layout,
-    nodes: usize,
     /// One row of quantities per node.
     pub values: Vec<f64>,
     pub states: Vec<State>,
@@ -95,22 +94,21 @@ impl Instants {
         let quantities = Quantities::new(description);
         let layout = Layout::new(description, &mesh.basis);
         let (nq, nj, nc) = (description.orientations(), description.joints(), description.positions());
-        let n = mesh.nodes.len();
+        let (n, collocation) = (mesh.nodes.len(), mesh.collocation());
         let z = || vec![0.0; nq];
         Instants {
             quantities,
             layout,
-            nodes: n,
             values: vec![0.0; n * quantities.len()],
             states: vec![State { q: z(), qd: z(), qdd: z() }; n],
             inverse: vec![0.0; n * inverse_length(nq, nj, nc)],
             placement: vec![0.0; n * placement_length(nq, nc)],
             swing: [vec![0.0; nc + nc * 2 * nq], vec![0.0; nc + nc * 2 * nq]],
             prescribed: Prescribed::new(layout.prescribed),
-            gradients: vec![0.0; n * quantities.len() * layout.len()],
-            betadd_p: vec![0.0; n * layout.len()],
-            basis: vec![[0.0; 3]; n * layout.per_joint],
-            by_duration: vec![[0.0; 3]; n * layout.prescribed],
+            gradients: vec![0.0; collocation * quantities.len() * layout.len()],
+            betadd_p: vec![0.0; collocation * layout.len()],
+            basis: vec![[0.0; 3]; collocation * layout.per_joint],
+            by_duration: vec![[0.0; 3]; collocation * layout.prescribed],
         }
     }
 
@@ -201,7 +199,7 @@ impl Instants {
         }
     }
 
-    /// Gradients of all quantities; `stance` must have been differentiated.
+    /// Gradients of all quantities at the collocation nodes; `stance` must have been differentiated.
     pub fn differentiate(&mut self, d: &Description, mesh: &Mesh, stance: &Stance, parameters: &[f64]) {
         let (nq, nj, nc, np) = (d.orientations(), d.joints(), d.positions(), self.layout.len());
         let (y, layout) = (self.quantities, self.layout);
@@ -209,7 +207,7 @@ impl Instants {
         let last = mesh.collocation() - 1;
         let mut gradients = std::mem::take(&mut self.gradients);
         let mut betadd = std::mem::take(&mut self.betadd_p);
-        for k in 0..self.nodes {
+        for k in 0..mesh.collocation() {
             self.tabulate(mesh, parameters, k);
             let chain = Chain::new(self, d, stance, k);
             let jacobian = self.jacobian(d, k);

@@ -73,6 +73,11 @@ impl Lobatto {
         self.monomial.map(|p| p.iter().rev().fold(0.0, |sum, c| sum * s + c))
     }
 
+    /// Slope of each Lagrange polynomial at `s`.
+    pub fn slopes(&self, s: f64) -> [f64; NODES] {
+        self.monomial.map(|p| (1..NODES).rev().fold(0.0, |sum, k| sum * s + k as f64 * p[k]))
+    }
+
     /// Monomial coefficients of the polynomial through `values` at the nodes.
     pub fn interpolate(&self, values: &[f64; NODES]) -> [f64; NODES] {
         let mut p = [0.0; NODES];

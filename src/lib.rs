@@ -10,6 +10,7 @@ pub mod instant;
 mod lgl;
 pub mod model;
 pub mod motion;
+mod polynomial;
 pub mod result;
 pub mod search;
 pub mod sqp;

@@ -62,6 +62,11 @@ impl Mesh {
         self.elements * (NODES - 1) + 1
     }
 
+    /// Element that contains `s`.
+    pub fn element(&self, s: f64) -> usize {
+        ((s * self.elements as f64) as usize).min(self.elements - 1)
+    }
+
     /// Replaces the further instants.
     pub fn set_instants(&mut self, instants: &[f64]) {
         self.nodes.truncate(self.collocation());
@@ -160,7 +165,7 @@ pub fn basis_derivatives(basis: &Basis, jet: &Jet, t: f64, i: usize) -> [f64; 3]
     [jet.value[i] * scale, jet.first[i] * scale / t, jet.second[i] * scale / (t * t)]
 }
 
-/// The solution of one half step. Matrices are row-major, one row of local parameters per node.
+/// The solution of one half step. Matrices are row-major, one row of local parameters per collocation node.
 #[derive(Clone, Debug)]
 pub struct Stance {
     pub beta: Vec<f64>,
@@ -191,7 +196,7 @@ impl Stance {
     pub fn new(description: &Description, mesh: &Mesh, leg: usize) -> Stance {
         let layout = Layout::new(description, &mesh.basis);
         let n = mesh.nodes.len();
-        let table = || vec![0.0; n * layout.len()];
+        let table = || vec![0.0; mesh.collocation() * layout.len()];
         let early_length = description.early[leg];
         Stance {
             beta: vec![0.0; n],
@@ -333,7 +338,7 @@ impl Stance {
         Ok(())
     }
 
-    /// Sensitivities of the solution in all local parameters.
+    /// Sensitivities of the solution in all local parameters, at the collocation nodes.
     pub fn differentiate(&mut self, gait: &dyn Gait, leg: usize, mesh: &Mesh, parameters: &[f64]) {
         let layout = self.layout;
         let np = layout.len();
@@ -342,16 +347,12 @@ impl Stance {
         self.sigma_p[..np].fill(0.0);
         self.beta_p[layout.beta()] = 1.0;
         self.sigma_p[layout.sigma()] = 1.0;
-        for k in 0..mesh.nodes.len() {
+        for k in 0..mesh.collocation() {
             self.explicit(gait, leg, mesh, k, t, parameters);
         }
         self.complete(0, t);
         for e in 0..mesh.elements {
             self.element_sensitivities(mesh, e, t);
-        }
-        for k in mesh.collocation()..mesh.nodes.len() {
-            self.state_sensitivities(mesh, k);
-            self.complete(k, t);
         }
     }
 
@@ -438,26 +439,11 @@ impl Stance {
         (beta, sigma)
     }
 
-    /// Sensitivities of β and σ at the further instant `k`.
-    fn state_sensitivities(&mut self, mesh: &Mesh, k: usize) {
-        let (first, integrals, share) = self.locate(mesh, mesh.nodes[k].0);
-        let np = self.layout.len();
-        for p in 0..np {
-            let (mut beta, mut sigma) = (self.beta_p[first * np + p], self.sigma_p[first * np + p]);
-            for (j, w) in integrals.iter().enumerate() {
-                beta += share * w * self.rate_p[(first + j) * np + p];
-                sigma += share * w * self.moment_p[(first + j) * np + p];
-            }
-            self.beta_p[k * np + p] = beta;
-            self.sigma_p[k * np + p] = sigma;
-        }
-    }
-
     /// Element that contains `s`: its first node, the integrals up to `s`, its share of the interval.
-    pub fn locate(&self, mesh: &Mesh, s: f64) -> (usize, [f64; NODES], f64) {
-        let scaled = s * mesh.elements as f64;
-        let e = (scaled as usize).min(mesh.elements - 1);
-        (e * (NODES - 1), mesh.lobatto.integrals(scaled - e as f64), 1.0 / mesh.elements as f64)
+    fn locate(&self, mesh: &Mesh, s: f64) -> (usize, [f64; NODES], f64) {
+        let e = mesh.element(s);
+        let integrals = mesh.lobatto.integrals(s * mesh.elements as f64 - e as f64);
+        (e * (NODES - 1), integrals, 1.0 / mesh.elements as f64)
     }
 }
 

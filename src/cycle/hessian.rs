@@ -7,6 +7,9 @@
 //! derivative of one weighted sum (kernel `curvature`), U the known sensitivities of (q, q̇, q̈).
 //! Explicit curvature remains where parameters enter bilinearly: T with the polynomial's values, and
 //! the initial velocities and σ as functions of Θ through the impact (kernel `touchdown_curvature`).
+//!
+//! All terms of an instant are summed into a matrix W with Hessian W + Wᵀ: a product of two gradients
+//! then is written once instead of twice.
 
 use super::phase::Phase;
 use super::problem::CLOSURE;
@@ -27,7 +30,7 @@ pub struct Workspace {
     phase: PhaseWork,
     /// The last step, in local parameters.
     reach: Vec<f64>,
-    /// Hessian of one half step in its local parameters, and half its projection.
+    /// W, later the Hessian, of one half step in its local parameters, and half its projection.
     h_local: Vec<f64>,
     half: Vec<f64>,
     touchdown: Vec<f64>,
@@ -107,6 +110,7 @@ impl Cycle<'_> {
             work.h_local.fill(0.0);
             self.instant_terms(k, mu, &mut work);
             work.phase.bilinear(p, &mut work.h_local, self.travel);
+            add_transpose(&mut work.h_local, p.layout.len());
             // Θ through the parameters: first order twice, then second order once.
             congruence(&work.h_local, &p.by_theta, n, &mut work.half, hessian);
             self.start_terms(k, lambda, mu, &mut work, hessian);
@@ -127,7 +131,7 @@ impl Cycle<'_> {
         let d = self.description();
         let p = &self.phases[k];
         let count = p.instants.quantities.len();
-        let nodes = p.mesh.nodes.len();
+        let nodes = p.mesh.collocation();
         let t = p.duration();
         work.weights.clear();
         work.weights.resize(nodes * count, 0.0);
@@ -139,6 +143,14 @@ impl Cycle<'_> {
             if phase == k {
                 constraint.partials(p.linearized(node), |quantity, partial| {
                     weights[node * count + quantity] -= multiplier * partial
+                });
+            }
+        });
+        self.weighted_dips(k, mu, |dip, multiplier| {
+            for (i, share) in dip.lowest.shape.iter().enumerate() {
+                let node = dip.first() + i;
+                self.path[dip.constraint].partials(p.linearized(node), |quantity, partial| {
+                    weights[node * count + quantity] -= multiplier * share * partial
                 });
             }
         });
@@ -174,7 +186,7 @@ impl Cycle<'_> {
         let p = &self.phases[k];
         let t = p.duration();
         let h = &mut work.h_local;
-        for node in 0..p.mesh.nodes.len() {
+        for node in 0..p.mesh.collocation() {
             work.phase.node(self.gait, d, p, node, h);
         }
         // Products of quantities: squares of torques, torque times rate, cones.
@@ -184,8 +196,12 @@ impl Cycle<'_> {
         }
         for (node, a, b, second) in &p.cost.seconds {
             let (ga, gb) = (p.instants.gradient(*node, *a), p.instants.gradient(*node, *b));
-            let weight = if a == b { 0.5 } else { 1.0 } * second * scale;
-            rank_two(h, ga, gb, weight);
+            if a == b {
+                square(h, ga, second * scale);
+            } else {
+                // The gradient of a rate is sparse.
+                product(h, gb, ga, second * scale);
+            }
         }
         for kink in &p.cost.kinks {
             let g = &mut work.local;
@@ -204,14 +220,31 @@ impl Cycle<'_> {
             let change = dot(g, &work.reach);
             let moved = REACH * change / kink.slope;
             let weight = kink.weight / (1.0 + moved * moved).sqrt();
-            rank_two(h, g, g, 0.5 * weight * scale);
+            square(h, g, weight * scale);
         }
         self.weighted_path_rows(mu, |phase, node, constraint, multiplier| {
             if phase == k {
                 constraint.curvature(p.linearized(node), |a, b, second| {
-                    rank_two(h, p.instants.gradient(node, a), p.instants.gradient(node, b), -0.5 * multiplier * second);
+                    product(h, p.instants.gradient(node, a), p.instants.gradient(node, b), -0.5 * multiplier * second);
                 });
             }
+        });
+        self.weighted_dips(k, mu, |dip, multiplier| {
+            // The minimum moves: its slope's gradient twice, over the curvature in s.
+            let slope = &mut work.local;
+            slope.fill(0.0);
+            for (i, (share, by)) in dip.lowest.shape.iter().zip(&dip.lowest.slopes).enumerate() {
+                let node = dip.first() + i;
+                let (constraint, y) = (&self.path[dip.constraint], p.linearized(node));
+                constraint.partials(y, |quantity, partial| {
+                    slope.iter_mut().zip(p.instants.gradient(node, quantity)).for_each(|(s, g)| *s += by * partial * g);
+                });
+                constraint.curvature(y, |a, b, second| {
+                    let weight = -0.5 * multiplier * share * second;
+                    product(h, p.instants.gradient(node, a), p.instants.gradient(node, b), weight);
+                });
+            }
+            square(h, slope, multiplier / dip.lowest.curvature);
         });
     }
 
@@ -363,7 +396,7 @@ impl Cycle<'_> {
 impl PhaseWork {
     /// Multipliers of the collocation equations, from the last element to the first.
     fn adjoint(&mut self, d: &Description, p: &Phase, lambda: &[f64], k: usize) {
-        let nodes = p.mesh.nodes.len();
+        let nodes = p.mesh.collocation();
         self.omega.clear();
         self.omega.resize(nodes, [0.0; 2]);
         self.stationarity.clear();
@@ -377,17 +410,6 @@ impl PhaseWork {
         let last = p.last();
         self.stationarity[last][0] -= lambda[CLOSURE * k];
         self.stationarity[last][1] -= lambda[CLOSURE * k + 1];
-        // Further instants hang on their element's first node and its rates.
-        for node in last + 1..nodes {
-            let [beta, sigma] = self.stationarity[node];
-            let (first, integrals, share) = p.stance.locate(&p.mesh, p.mesh.nodes[node].0);
-            self.stationarity[first][0] += beta;
-            self.stationarity[first][1] += sigma;
-            for (j, w) in integrals.iter().enumerate() {
-                self.omega[first + j][0] += share * w * beta;
-                self.omega[first + j][1] += share * w * sigma;
-            }
-        }
         p.stance.adjoint(&p.mesh, p.duration(), &mut self.stationarity, &mut self.omega);
     }
 
@@ -505,25 +527,20 @@ impl PhaseWork {
                 let by_duration = times(&by_t[ll]);
                 tt += dot3(&by_t[jj], &by_duration);
                 if ll <= jj {
+                    let share = if ll == jj { 0.5 } else { 1.0 };
                     for (c, column) in basis.iter().enumerate() {
-                        let v = times(column);
+                        let v = times(column).map(|x| share * x);
                         for (r, row) in basis.iter().enumerate() {
-                            let value = dot3(row, &v);
-                            h[layout.joint(jj, r) * np + layout.joint(ll, c)] += value;
-                            if ll < jj {
-                                h[layout.joint(ll, c) * np + layout.joint(jj, r)] += value;
-                            }
+                            h[layout.joint(jj, r) * np + layout.joint(ll, c)] += dot3(row, &v);
                         }
                     }
                 }
                 for (r, row) in basis.iter().enumerate() {
-                    let value = dot3(row, &by_duration);
-                    h[layout.joint(jj, r) * np + layout.duration()] += value;
-                    h[layout.duration() * np + layout.joint(jj, r)] += value;
+                    h[layout.joint(jj, r) * np + layout.duration()] += dot3(row, &by_duration);
                 }
             }
         }
-        h[layout.duration() * np + layout.duration()] += tt;
+        h[layout.duration() * np + layout.duration()] += 0.5 * tt;
 
         // Unactuated coordinate: dense in the parameters.
         for (c, v) in self.v.iter_mut().enumerate() {
@@ -551,7 +568,7 @@ impl PhaseWork {
             }
         }
         for (v, s) in self.v.iter().zip(&sensitivity) {
-            rank_two(h, v, s, 1.0);
+            product(h, v, s, 1.0);
         }
         // ω T σ̇, and T times the vertical velocity at the ends.
         if node <= p.last() {
@@ -582,11 +599,10 @@ impl PhaseWork {
                 let mixed = (0..3).map(|a| weight[a] * e[a] * b[a] / t).sum::<f64>();
                 let index = layout.joint(jj, r);
                 h[index * np + layout.duration()] += mixed;
-                h[layout.duration() * np + index] += mixed;
                 let value = p.parameters[index];
                 duration += (0..3).map(|a| weight[a] * e[a] * (e[a] - 1.0) * b[a] / (t * t)).sum::<f64>() * value;
             }
-            h[layout.duration() * np + layout.duration()] += duration;
+            h[layout.duration() * np + layout.duration()] += 0.5 * duration;
         }
     }
 
@@ -610,24 +626,40 @@ fn dot3(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// `h += weight (a bᵀ + b aᵀ)`.
-fn rank_two(h: &mut [f64], a: &[f64], b: &[f64], weight: f64) {
-    for (row, (x, y)) in h.chunks_mut(a.len()).zip(a.iter().zip(b)) {
-        let (x, y) = (weight * x, weight * y);
-        if x != 0.0 || y != 0.0 {
-            for ((slot, a), b) in row.iter_mut().zip(a).zip(b) {
-                *slot += x * b + y * a;
-            }
+/// `weight (a bᵀ + b aᵀ)` into W.
+fn product(w: &mut [f64], a: &[f64], b: &[f64], weight: f64) {
+    for (row, x) in w.chunks_mut(a.len()).zip(a) {
+        let x = weight * x;
+        if x != 0.0 {
+            row.iter_mut().zip(b).for_each(|(slot, b)| *slot += x * b);
         }
     }
 }
 
-/// `h += weight (e_T aᵀ + a e_Tᵀ)`.
-fn cross_duration(h: &mut [f64], a: &[f64], weight: f64, duration: usize) {
-    let n = a.len();
-    for (i, x) in a.iter().enumerate() {
-        h[duration * n + i] += weight * x;
-        h[i * n + duration] += weight * x;
+/// `weight a aᵀ` into W, by its lower triangle.
+fn square(w: &mut [f64], a: &[f64], weight: f64) {
+    for (i, (row, x)) in w.chunks_mut(a.len()).zip(a).enumerate() {
+        let x = weight * x;
+        if x != 0.0 {
+            row[..i].iter_mut().zip(a).for_each(|(slot, a)| *slot += x * a);
+            row[i] += 0.5 * x * a[i];
+        }
+    }
+}
+
+/// `weight (e_T aᵀ + a e_Tᵀ)` into W.
+fn cross_duration(w: &mut [f64], a: &[f64], weight: f64, duration: usize) {
+    w[duration * a.len()..].iter_mut().zip(a).for_each(|(slot, a)| *slot += weight * a);
+}
+
+/// `w + wᵀ` in the place of w.
+fn add_transpose(w: &mut [f64], n: usize) {
+    for i in 0..n {
+        for j in 0..=i {
+            let sum = w[i * n + j] + w[j * n + i];
+            w[i * n + j] = sum;
+            w[j * n + i] = sum;
+        }
     }
 }
 
@@ -652,8 +684,8 @@ fn congruence(h: &[f64], map: &[f64], n: usize, half: &mut [f64], out: &mut [f64
 }
 
 impl Stance {
-    /// Backward sweep: `stationarity` holds ∂L/∂(β, σ) per node at fixed rates, `omega` what further
-    /// instants already put on T β̇ and T σ̇; on return ω holds the weights of all.
+    /// Backward sweep: `stationarity` holds ∂L/∂(β, σ) per node at fixed rates; on return `omega`, zero before, holds the
+    /// weights of T β̇ and T σ̇.
     fn adjoint(&self, mesh: &crate::stance::Mesh, t: f64, stationarity: &mut [[f64; 2]], omega: &mut [[f64; 2]]) {
         const M: usize = NODES - 1;
         let a = &mesh.lobatto.integral;

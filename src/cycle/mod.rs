@@ -6,8 +6,10 @@
 //! Equalities: β̇ and β close the cycle (eq. 23, 24; the former as σ), the swing foot lands, and the
 //! mean speed is the given one.
 //!
-//! `phase` is one half step, `problem` the nonlinear program, `hessian` its second derivatives.
+//! `phase` is one half step, `dip` a constraint between its nodes, `problem` the nonlinear program, `hessian` its
+//! second derivatives.
 
+mod dip;
 mod hessian;
 mod phase;
 mod problem;
@@ -18,6 +20,7 @@ use crate::cost::{Integral, integrate};
 use crate::model::{Description, Gait, HalfSteps};
 use crate::motion::{Costs, Criterion, HalfStep, Motion};
 use crate::stance::Undefined;
+use dip::Dip;
 use hessian::Workspace;
 use phase::Phase;
 pub use sample::Sample;
@@ -209,11 +212,24 @@ impl<'a> Cycle<'a> {
         scale
     }
 
-    /// Looks at further instants (shares of each half step) besides the collocation nodes.
+    /// Looks at further instants (shares of each half step) besides the collocation nodes: nothing is imposed there.
     pub fn set_instants(&mut self, instants: &[Vec<f64>]) {
         let d = self.description();
         for (phase, list) in self.phases.iter_mut().zip(instants) {
             phase.set_instants(d, list);
+        }
+    }
+
+    /// Imposes a path constraint at its lowest point in the element around `s`, where it is known to have this value
+    /// (scaled) in the last simulated motion.
+    pub fn impose(&mut self, phase: usize, constraint: usize, s: f64, value: f64) {
+        let p = &mut self.phases[phase];
+        let element = p.mesh.element(s);
+        let lowest = p.lowest(&self.path[constraint], element);
+        let dip = Dip { constraint, element, offset: value - lowest.value, lowest };
+        match p.dips.iter_mut().find(|known| known.constraint == constraint && known.element == element) {
+            Some(known) => *known = dip,
+            None => p.dips.push(dip),
         }
     }
 

@@ -1,8 +1,11 @@
 //! One half step that defines the gait, and how its parameters depend on Θ.
 
 use super::Variables;
+use super::dip::{Dip, Lowest};
+use crate::constraints::PathConstraint;
 use crate::cost::Integral;
 use crate::instant::Instants;
+use crate::lgl::NODES;
 use crate::model::{Description, Gait};
 use crate::stance::{Layout, Mesh, Stance};
 
@@ -17,6 +20,8 @@ pub struct Phase {
     /// Local parameters: see `stance`.
     pub parameters: Vec<f64>,
     pub cost: Integral,
+    /// Constraints imposed between nodes.
+    pub dips: Vec<Dip>,
     /// Configuration and velocity at its start, after the impact.
     pub q_start: Vec<f64>,
     pub qd_start: Vec<f64>,
@@ -58,6 +63,7 @@ impl Phase {
             layout,
             parameters: z(layout.len()),
             cost: Integral::default(),
+            dips: Vec::new(),
             q_start: z(nq),
             qd_start: z(nq),
             q_end: z(nq),
@@ -90,6 +96,12 @@ impl Phase {
     /// Last collocation node.
     pub fn last(&self) -> usize {
         self.mesh.collocation() - 1
+    }
+
+    /// Where a path constraint is lowest in an element of the last simulated motion, as the quartic has it.
+    pub fn lowest(&self, constraint: &PathConstraint, element: usize) -> Lowest {
+        let first = element * (NODES - 1);
+        Lowest::of(&self.mesh.lobatto, &std::array::from_fn(|i| constraint.value(self.instants.row(first + i))))
     }
 
     /// Quantities of a node at the linearized point.
@@ -145,11 +157,14 @@ impl Phase {
     }
 
     /// Derivatives in the local parameters.
-    pub fn differentiate(&mut self, gait: &dyn Gait) {
+    pub fn differentiate(&mut self, gait: &dyn Gait, path: &[PathConstraint]) {
         let d = gait.description();
         self.stance.differentiate(gait, self.leg, &self.mesh, &self.parameters);
         self.instants.differentiate(d, &self.mesh, &self.stance, &self.parameters);
         self.linearized.copy_from_slice(&self.instants.values);
+        for k in 0..self.dips.len() {
+            self.dips[k].lowest = self.lowest(&path[self.dips[k].constraint], self.dips[k].element);
+        }
         let last = self.last();
         self.instants.platform_x_gradient(d, &self.stance, 0, &mut self.scratch);
         self.instants.platform_x_gradient(d, &self.stance, last, &mut self.travel_p);

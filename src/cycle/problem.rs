@@ -4,8 +4,10 @@
 //! only when it is asked for. Everything that rows need is kept from the last linearization: trial
 //! points in between do not disturb it.
 
+use super::dip::Dip;
 use super::{Cycle, Label, renamed};
 use crate::constraints::PathConstraint;
+use crate::lgl::NODES;
 use crate::model::Description;
 use crate::sqp::{self, Problem, Undefined, Values};
 
@@ -20,6 +22,7 @@ pub fn equalities(d: &Description) -> usize {
 /// What an inequality row is.
 enum Row {
     Path { phase: usize, node: usize, constraint: usize },
+    Dip { phase: usize, index: usize },
     Impact { phase: usize, constraint: usize },
 }
 
@@ -38,7 +41,7 @@ impl Cycle<'_> {
     pub(super) fn weighted_path_rows(&self, mu: &[f64], mut visit: impl FnMut(usize, usize, &PathConstraint, f64)) {
         let mut i = 0;
         for (k, phase) in self.phases.iter().enumerate() {
-            for node in 0..phase.mesh.nodes.len() {
+            for node in 0..phase.mesh.collocation() {
                 for constraint in self.path_at(node) {
                     if mu[i] != 0.0 {
                         visit(k, node, constraint, mu[i]);
@@ -49,10 +52,25 @@ impl Cycle<'_> {
         }
     }
 
+    /// Index of the first row of a dip.
+    pub(super) fn first_dip_row(&self) -> usize {
+        let at_start = self.at_start().count();
+        self.phases.iter().map(|p| at_start + (p.mesh.collocation() - 1) * self.path.len()).sum()
+    }
+
     /// Index of the first impact row.
     pub(super) fn first_impact_row(&self) -> usize {
-        let at_start = self.at_start().count();
-        self.phases.iter().map(|p| at_start + (p.mesh.nodes.len() - 1) * self.path.len()).sum()
+        self.first_dip_row() + self.phases.iter().map(|p| p.dips.len()).sum::<usize>()
+    }
+
+    /// Calls `visit(index, multiplier)` for every dip of a half step with a multiplier.
+    pub(super) fn weighted_dips(&self, phase: usize, mu: &[f64], mut visit: impl FnMut(&Dip, f64)) {
+        let before: usize = self.phases[..phase].iter().map(|p| p.dips.len()).sum();
+        for (dip, mu) in self.phases[phase].dips.iter().zip(&mu[self.first_dip_row() + before..]) {
+            if *mu != 0.0 {
+                visit(dip, *mu);
+            }
+        }
     }
 
     fn locate(&self, i: usize) -> Row {
@@ -63,11 +81,17 @@ impl Cycle<'_> {
                 return Row::Path { phase, node: 0, constraint: self.at_start().nth(rest).unwrap_or(0) };
             }
             rest -= at_start;
-            let others = (p.mesh.nodes.len() - 1) * self.path.len();
+            let others = (p.mesh.collocation() - 1) * self.path.len();
             if rest < others {
                 return Row::Path { phase, node: 1 + rest / self.path.len(), constraint: rest % self.path.len() };
             }
             rest -= others;
+        }
+        for (phase, p) in self.phases.iter().enumerate() {
+            if rest < p.dips.len() {
+                return Row::Dip { phase, index: rest };
+            }
+            rest -= p.dips.len();
         }
         Row::Impact { phase: rest / self.impact.count(), constraint: rest % self.impact.count() }
     }
@@ -79,6 +103,12 @@ impl Cycle<'_> {
                 let p = &self.phases[phase];
                 let time = p.mesh.nodes[node].0 * p.duration();
                 Label { name: self.path[constraint].name.clone(), half_step: phase + 1, time }
+            }
+            Row::Dip { phase, index } => {
+                let p = &self.phases[phase];
+                let dip = &p.dips[index];
+                let time = (dip.element as f64 + dip.lowest.at) / p.mesh.elements as f64 * p.duration();
+                Label { name: self.path[dip.constraint].name.clone(), half_step: phase + 1, time }
             }
             Row::Impact { phase, constraint } => Label {
                 name: self.impact.name(constraint).into(),
@@ -240,11 +270,16 @@ impl Problem for Cycle<'_> {
         out.equalities[CLOSURE * self.phases.len()] = (self.travel - self.speed * duration) / d.leg_length();
         let mut slots = out.inequalities.iter_mut();
         for p in &self.phases {
-            for node in 0..p.mesh.nodes.len() {
+            for node in 0..p.mesh.collocation() {
                 let y = p.instants.row(node);
                 for (constraint, slot) in self.path_at(node).zip(&mut slots) {
                     *slot = constraint.value(y);
                 }
+            }
+        }
+        for p in &self.phases {
+            for (dip, slot) in p.dips.iter().zip(&mut slots) {
+                *slot = p.lowest(&self.path[dip.constraint], dip.element).value + dip.offset;
             }
         }
         for p in &self.phases {
@@ -267,7 +302,7 @@ impl Problem for Cycle<'_> {
         self.differentiate_starts();
         for (k, phase) in self.phases.iter_mut().enumerate() {
             phase.differentiate_parameters(d, &self.variables, k * self.variables.per_phase());
-            phase.differentiate(self.gait);
+            phase.differentiate(self.gait, &self.path);
         }
         self.differentiate_cost();
         self.differentiate_equalities();
@@ -292,6 +327,17 @@ impl Problem for Cycle<'_> {
                     p.project(p.instants.gradient(node, quantity), partial, row);
                 });
             }
+            Row::Dip { phase, index } => {
+                let p = &self.phases[phase];
+                let dip = &p.dips[index];
+                row.fill(0.0);
+                for (i, share) in dip.lowest.shape.iter().enumerate().take(NODES) {
+                    let node = dip.first() + i;
+                    self.path[dip.constraint].partials(p.linearized(node), |quantity, partial| {
+                        p.project(p.instants.gradient(node, quantity), share * partial, row);
+                    });
+                }
+            }
             Row::Impact { phase, constraint } => {
                 let index = phase * self.impact.count() + constraint;
                 row.copy_from_slice(&self.impact_rows[index * row.len()..][..row.len()]);
@@ -309,7 +355,7 @@ impl Problem for Cycle<'_> {
             // The direction in local parameters, then in the quantities of each instant.
             local.clear();
             local.extend(p.by_theta.chunks(n).map(|row| dot(row, direction)));
-            for node in 0..p.mesh.nodes.len() {
+            for node in 0..p.mesh.collocation() {
                 change.clear();
                 change.extend(p.instants.gradients(node).chunks(local.len()).map(|g| dot(g, &local)));
                 let y = p.linearized(node);
@@ -318,6 +364,20 @@ impl Problem for Cycle<'_> {
                     constraint.partials(y, |quantity, partial| sum += partial * change[quantity]);
                     *slot = sum;
                 }
+            }
+        }
+        for p in &self.phases {
+            local.clear();
+            local.extend(p.by_theta.chunks(n).map(|row| dot(row, direction)));
+            for (dip, slot) in p.dips.iter().zip(&mut slots) {
+                let mut sum = 0.0;
+                for (i, share) in dip.lowest.shape.iter().enumerate().take(NODES) {
+                    let node = dip.first() + i;
+                    self.path[dip.constraint].partials(p.linearized(node), |quantity, partial| {
+                        sum += share * partial * dot(p.instants.gradient(node, quantity), &local);
+                    });
+                }
+                *slot = sum;
             }
         }
         for (row, slot) in self.impact_rows.chunks(n).zip(slots) {

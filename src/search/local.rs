@@ -103,14 +103,13 @@ pub fn follow(
     let mut solution = sqp::minimize(&mut cycle, start, &options, observe);
     let mut iterations = solution.iterations;
     let mut violation = f64::INFINITY;
-    let mut instants = vec![Vec::new(); cycle.phases()];
     for _ in 0..ROUNDS {
         let Ok(found) = dips(&mut fine, &solution.x) else { break };
         violation = found.violation;
-        if !solution.status.is_optimal() || violation <= DENSE || !found.join(&mut instants) {
+        if !solution.status.is_optimal() || violation <= DENSE || cycle.simulate(&solution.x).is_err() {
             break;
         }
-        cycle.set_instants(&instants);
+        found.impose(&mut cycle);
         solution = sqp::minimize(&mut cycle, &solution.x, &options, observe);
         iterations += solution.iterations;
     }

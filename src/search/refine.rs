@@ -1,10 +1,9 @@
 //! Constraints between the nodes: where a path constraint dips below its values at the nodes.
 //!
-//! The optimizer imposes path constraints at finitely many instants. After each solution the motion is
-//! looked at on a fine grid; the lowest points of constraints that come near zero become instants of
-//! their own, besides those found before, and the problem is solved again from there. A dip's depth
-//! falls with the square of the distance to the nearest instant, so a few rounds suffice and no
-//! margin is needed.
+//! The optimizer imposes path constraints at the nodes. After each solution the motion is looked at on a
+//! fine grid; where a constraint dips near zero inside an element, its lowest point there becomes a row
+//! of its own (`cycle::dip`), with the value that the grid shows, and the problem is solved again from
+//! there. The row follows its dip, so two or three rounds suffice and no margin is needed.
 
 use crate::cycle::Cycle;
 use crate::stance::Undefined;
@@ -13,16 +12,22 @@ use crate::stance::Undefined;
 const GRID: usize = 240;
 /// Constraints above this (scaled) are left alone.
 const NEAR: f64 = 2e-3;
-/// Instants closer than this (share of the half step) are one.
-const SAME: f64 = 3e-4;
 
 /// What the grid shows.
 #[derive(Clone, Debug, Default)]
 pub struct Dips {
     /// Largest violation found (scaled).
     pub violation: f64,
-    /// Per half step the instants at which constraints dip lowest.
-    pub instants: Vec<Vec<f64>>,
+    found: Vec<Dip>,
+}
+
+/// A path constraint is lowest here, with this value (scaled).
+#[derive(Clone, Debug)]
+struct Dip {
+    phase: usize,
+    constraint: usize,
+    s: f64,
+    value: f64,
 }
 
 /// A copy of the problem that looks at a fine grid.
@@ -34,18 +39,11 @@ pub fn probe<'a>(cycle: &Cycle<'a>) -> Cycle<'a> {
 }
 
 impl Dips {
-    /// Adds to `known` the instants that are not there yet; tells whether there were any.
-    pub fn join(&self, known: &mut [Vec<f64>]) -> bool {
-        let mut added = false;
-        for (known, new) in known.iter_mut().zip(&self.instants) {
-            for at in new {
-                if known.iter().all(|k| (k - at).abs() > SAME) {
-                    known.push(*at);
-                    added = true;
-                }
-            }
+    /// Imposes the constraints where they dip. `cycle` must have simulated the same motion.
+    pub fn impose(&self, cycle: &mut Cycle) {
+        for dip in &self.found {
+            cycle.impose(dip.phase, dip.constraint, dip.s, dip.value);
         }
-        added
     }
 }
 
@@ -62,7 +60,6 @@ pub fn dips(probe: &mut Cycle, theta: &[f64]) -> Result<Dips, Undefined> {
         // Collocation nodes and grid points can coincide.
         order.dedup_by(|a, b| probe.instant(phase, *a) == probe.instant(phase, *b));
         let s: Vec<f64> = order.iter().map(|k| probe.instant(phase, *k)).collect();
-        let mut found: Vec<(f64, f64)> = Vec::new();
         for constraint in 0..probe.path_count() {
             let values: Vec<f64> = order.iter().map(|k| probe.path_value(phase, *k, constraint)).collect();
             for k in 1..s.len() - 1 {
@@ -73,21 +70,14 @@ pub fn dips(probe: &mut Cycle, theta: &[f64]) -> Result<Dips, Undefined> {
                     let (at, value) = vertex(&s[k - 1..=k + 1], &values[k - 1..=k + 1]);
                     if at > s[k - 1] && at < s[k + 1] {
                         result.violation = result.violation.max(-value);
-                        found.push((value, at));
+                        result.found.push(Dip { phase, constraint, s: at, value });
                     }
                 }
             }
         }
-        found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-        let mut instants: Vec<f64> = Vec::new();
-        for (_, at) in found {
-            if instants.iter().all(|i| (i - at).abs() > SAME) {
-                instants.push(at);
-            }
-        }
-        instants.sort_by(f64::total_cmp);
-        result.instants.push(instants);
     }
+    // Of two dips in one element the lower one has the last word.
+    result.found.sort_by(|a, b| b.value.total_cmp(&a.value));
     Ok(result)
 }
 
