@@ -4,12 +4,13 @@ mod energy;
 mod torque;
 
 use crate::instant::Instants;
+use crate::lgl::NODES;
 use crate::model::Description;
 use crate::motion::Criterion;
 use crate::stance::Mesh;
 
 /// Integral over s ∈ [0, 1] of a criterion's integrand, and its partial derivatives.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Integral {
     pub value: f64,
     /// (node, quantity, partial derivative).
@@ -20,6 +21,19 @@ pub struct Integral {
     pub kinks: Vec<Kink>,
 }
 
+impl Integral {
+    /// Room for the integral of any criterion over a mesh.
+    pub fn new(description: &Description, mesh: &Mesh) -> Integral {
+        let samples = description.joints() * mesh.elements * NODES;
+        Integral {
+            value: 0.0,
+            partials: Vec::with_capacity(2 * samples),
+            seconds: Vec::with_capacity(3 * samples),
+            kinks: Vec::with_capacity(samples),
+        }
+    }
+}
+
 /// A simple root of a joint's power inside an element.
 #[derive(Clone, Debug)]
 pub struct Kink {
@@ -27,7 +41,7 @@ pub struct Kink {
     /// First node of the element.
     pub first: usize,
     /// Values of the Lagrange polynomials at the root.
-    pub shape: [f64; crate::lgl::NODES],
+    pub shape: [f64; NODES],
     pub weight: f64,
     /// Slope of the power at the root, per element.
     pub slope: f64,

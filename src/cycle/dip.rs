@@ -76,7 +76,8 @@ mod tests {
         let (dx, dy) = (lobatto.nodes.map(|s| s.powi(3)), lobatto.nodes.map(|s| (s * 5.0).sin()));
         let first = (value(x + h, y) - value(x - h, y)) / (2.0 * h);
         assert!((first - dot(&lowest.shape, &dx)).abs() < 1e-7);
-        let mixed = (value(x + h, y + h) - value(x + h, y - h) - value(x - h, y + h) + value(x - h, y - h)) / (4.0 * h * h);
+        let mixed =
+            (value(x + h, y + h) - value(x + h, y - h) - value(x - h, y + h) + value(x - h, y - h)) / (4.0 * h * h);
         let exact = -dot(&lowest.slopes, &dx) * dot(&lowest.slopes, &dy) / lowest.curvature;
         assert!((mixed - exact).abs() < 1e-5 * exact.abs().max(1.0), "{mixed} {exact}");
         assert!(dot(&lowest.slopes, &values(x, y)).abs() < 1e-12, "the slope vanishes at the minimum");

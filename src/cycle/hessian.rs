@@ -72,12 +72,12 @@ impl Workspace {
         Workspace {
             local: z(np),
             phase: PhaseWork {
-                weights: Vec::new(),
+                weights: z(phase.linearized.len()),
                 gradient: z(np),
                 travel: 0.0,
-                omega: Vec::new(),
-                stationarity: Vec::new(),
-                direct: Vec::new(),
+                omega: Vec::with_capacity(phase.mesh.collocation()),
+                stationarity: Vec::with_capacity(phase.mesh.collocation()),
+                direct: Vec::with_capacity(phase.mesh.collocation()),
                 out: z(3 * nq + 4 * nq * nq),
                 n: z(d.joints() + 1),
                 v: [z(np), z(np), z(np)],

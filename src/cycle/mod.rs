@@ -144,7 +144,7 @@ impl<'a> Cycle<'a> {
             criterion,
             speed,
             smoothing: 0.0,
-            linearized: Vec::new(),
+            linearized: Vec::with_capacity(n),
             moved: vec![0.0; n],
             cost: 0.0,
             cost_gradient: vec![0.0; n],
@@ -281,9 +281,9 @@ impl<'a> Cycle<'a> {
     pub fn costs(&self) -> Costs {
         let d = self.description();
         let of = |criterion| {
-            let mut integral = Integral::default();
             let mut sum = 0.0;
             for p in &self.phases {
+                let mut integral = Integral::new(d, &p.mesh);
                 integrate(criterion, 0.0, d, &p.mesh, &p.instants, &mut integral);
                 sum += p.duration() * integral.value;
             }

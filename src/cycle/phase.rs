@@ -62,7 +62,7 @@ impl Phase {
             instants,
             layout,
             parameters: z(layout.len()),
-            cost: Integral::default(),
+            cost: Integral::new(d, &mesh),
             dips: Vec::new(),
             q_start: z(nq),
             qd_start: z(nq),

@@ -85,12 +85,27 @@ pub fn descend(
         iterations += solution.iterations;
         theta = solution.x;
     }
-    let local = follow(gait, criterion, speed, &theta, observe);
+    let local = polish(gait, criterion, speed, &theta, observe);
     Local { iterations: iterations + local.iterations, ..local }
 }
 
-/// Minimizes from a `start` near an optimum: that of a neighbouring speed, say.
+/// Minimizes from the optimum of a neighbouring problem: directly, or as from anywhere if that leads nowhere.
 pub fn follow(
+    gait: &dyn Gait,
+    criterion: Criterion,
+    speed: f64,
+    start: &[f64],
+    observe: &mut dyn FnMut(&sqp::Iteration) -> Control,
+) -> Local {
+    let local = polish(gait, criterion, speed, start, observe);
+    if matches!(local.status, Status::Optimal | Status::Stopped) {
+        return local;
+    }
+    descend(gait, criterion, speed, start, observe)
+}
+
+/// The optimum near `start`, with constraints imposed between nodes where they dip.
+fn polish(
     gait: &dyn Gait,
     criterion: Criterion,
     speed: f64,

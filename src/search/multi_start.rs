@@ -1,7 +1,7 @@
 //! Many starts, all local optima: in parallel, with the same result for any number of threads.
 
 use super::guess::{Plan, walk};
-use super::local::{Local, descend};
+use super::local::{Local, descend, follow};
 use crate::cycle::Cycle;
 use crate::model::Gait;
 use crate::motion::Criterion;
@@ -70,7 +70,7 @@ pub fn search_from(
         .into_par_iter()
         .map(|k| {
             let local = match neighbours.get(k) {
-                Some(theta) => descend(gait, criterion, speed, theta, &mut |_| Control::Continue),
+                Some(theta) => follow(gait, criterion, speed, theta, &mut |_| Control::Continue),
                 None => {
                     let theta = start(gait, criterion, speed, settings.seed, k - neighbours.len());
                     descend(gait, criterion, speed, &theta, &mut |_| Control::Continue)

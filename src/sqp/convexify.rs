@@ -28,7 +28,7 @@ impl Convexifier {
         Self {
             l: vec![0.0; n * n],
             augmented: vec![0.0; n * n],
-            active: Vec::new(),
+            active: Vec::with_capacity(n),
             vectors: vec![0.0; n * n],
             lambda: vec![0.0; n],
             off: vec![0.0; n],

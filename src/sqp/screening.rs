@@ -79,10 +79,10 @@ enum Start {
 impl Subproblem {
     pub(super) fn new(n: usize, equalities: usize, inequalities: usize, method: Subproblems) -> Self {
         Self {
-            qp: Quadratic::new(n, equalities + inequalities.min(4 * FEW)),
-            solver: ActiveSet::new(n),
+            qp: Quadratic::new(n, equalities + inequalities),
+            solver: ActiveSet::new(n, equalities + inequalities),
             method,
-            ids: Vec::with_capacity(inequalities.min(4 * FEW)),
+            ids: Vec::with_capacity(inequalities),
             row_of: vec![NONE; inequalities],
             bound_places: vec![Place::Off; 2 * n],
             equality_places: vec![Place::Working; equalities],
@@ -93,7 +93,7 @@ impl Subproblem {
             limit: f64::INFINITY,
             row: vec![0.0; n],
             scratch: vec![0.0; n],
-            step: Step::default(),
+            step: Step::with_room(n, equalities + inequalities),
             lambda: vec![0.0; equalities],
             mu: vec![0.0; inequalities],
             equality_directions: vec![0.0; equalities],
@@ -242,7 +242,7 @@ impl Subproblem {
             };
             match outcome {
                 Ok(step) => {
-                    self.step.clone_from(step);
+                    self.step.copy(step);
                     self.qp.hints.copy_from_slice(self.solver.places());
                     return Ok(Start::Resume);
                 }

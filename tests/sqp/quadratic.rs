@@ -77,7 +77,7 @@ fn value(qp: &Quadratic, d: &[f64]) -> f64 {
 
 /// The active-set method must solve it, to tighter conditions than Clarabel, and agree with it where d is well determined.
 fn compare(qp: &Quadratic) -> Result<(), TestCaseError> {
-    let mut solver = ActiveSet::new(qp.n);
+    let mut solver = ActiveSet::new(qp.n, qp.len());
     let ours = solver.solve(qp);
     let theirs = interior::solve(qp);
     match (ours, theirs) {
@@ -136,7 +136,7 @@ proptest! {
         let whole = program(seed, n, rows, 0, Kind { condition: 1e2, ..Kind::default() });
         let mut part = whole.clone();
         part.clear();
-        let mut solver = ActiveSet::new(n);
+        let mut solver = ActiveSet::new(n, 0);
         prop_assert!(solver.solve(&part).is_ok());
         for i in 0..rows {
             part.push(whole.row(i), 0.0, false, f64::INFINITY);
@@ -144,7 +144,7 @@ proptest! {
         let other = program(seed, n, rows, 0, Kind { condition: 1e2, ..Kind::default() });
         prop_assert_eq!(other.len(), whole.len());
         prop_assert!(solver.resume(&part).is_ok() || interior::solve(&part).is_err());
-        let scratch = ActiveSet::new(n).solve(&whole).cloned();
+        let scratch = ActiveSet::new(n, 0).solve(&whole).cloned();
         let restarted = solver.solve(&whole).cloned();
         prop_assert_eq!(scratch.is_ok(), restarted.is_ok());
     }
@@ -156,8 +156,8 @@ fn names_a_contradiction() {
     qp.hessian = vec![1.0, 0.0, 0.0, 1.0];
     qp.push(&[1.0, 0.0], -1.0, false, f64::INFINITY);
     qp.push(&[-1.0, 0.0], 0.0, false, f64::INFINITY);
-    assert_eq!(ActiveSet::new(2).solve(&qp).err(), Some(Failure::Inconsistent));
+    assert_eq!(ActiveSet::new(2, 2).solve(&qp).err(), Some(Failure::Inconsistent));
     assert_eq!(interior::solve(&qp).err(), Some(Failure::Inconsistent));
     qp.hessian[0] = -1.0;
-    assert_eq!(ActiveSet::new(2).solve(&qp).err(), Some(Failure::NotConvex));
+    assert_eq!(ActiveSet::new(2, 2).solve(&qp).err(), Some(Failure::NotConvex));
 }

@@ -56,14 +56,20 @@ pub struct ActiveSet {
 }
 
 impl ActiveSet {
-    /// A workspace for programs of `n` variables.
+    /// A workspace for programs of `n` variables, and room for `rows` rows.
     #[must_use]
-    pub fn new(n: usize) -> Self {
+    pub fn new(n: usize, rows: usize) -> Self {
         let zeros = || vec![0.0; n];
+        let ids = 2 * n + rows;
         Self {
             n,
             factor: Factor::new(n),
             working: Vec::with_capacity(n),
+            place: Vec::with_capacity(ids),
+            excused: Vec::with_capacity(ids),
+            queue: Vec::with_capacity(QUEUE),
+            y: Vec::with_capacity(ids),
+            result: Step::with_room(n, rows),
             d: zeros(),
             w: zeros(),
             u: zeros(),

@@ -64,6 +64,24 @@ pub struct Step {
     pub bound_multipliers: Vec<f64>,
 }
 
+impl Step {
+    /// A step without content, and room for one of `n` variables and `rows` rows.
+    pub(super) fn with_room(n: usize, rows: usize) -> Self {
+        Self {
+            d: Vec::with_capacity(n),
+            multipliers: Vec::with_capacity(rows),
+            bound_multipliers: Vec::with_capacity(n),
+        }
+    }
+
+    /// Takes over another step's numbers.
+    pub(super) fn copy(&mut self, other: &Self) {
+        self.d.clone_from(&other.d);
+        self.multipliers.clone_from(&other.multipliers);
+        self.bound_multipliers.clone_from(&other.bound_multipliers);
+    }
+}
+
 /// Why a quadratic program was not solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Failure {
@@ -93,7 +111,11 @@ impl Quadratic {
             limits: Vec::with_capacity(rows),
             equality: Vec::with_capacity(rows),
             norms: Vec::with_capacity(rows),
-            hints: vec![Place::Off; 2 * n],
+            hints: {
+                let mut hints = Vec::with_capacity(2 * n + rows);
+                hints.resize(2 * n, Place::Off);
+                hints
+            },
         }
     }
 

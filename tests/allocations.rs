@@ -1,0 +1,35 @@
+//! The iterations of an optimization allocate nothing: all memory is taken before the first.
+
+use piaffe::cycle::Cycle;
+use piaffe::gaits::GAITS;
+use piaffe::model::Gait;
+use piaffe::motion::Criterion;
+use piaffe::search::local::options;
+use piaffe::search::multi_start::start;
+use piaffe::sqp::{Control, Options, minimize};
+
+/// Allocations of a run that is stopped after so many iterations, and how many there were.
+fn allocations(gait: &dyn Gait, criterion: Criterion, limit: usize) -> (u64, usize) {
+    let theta = start(gait, criterion, 0.6, 1, 0);
+    let mut cycle = Cycle::new(gait, criterion, 0.6);
+    let options = Options { iteration_limit: limit, ..options(&cycle) };
+    let mut iterations = 0;
+    let counted = allocation_counter::measure(|| {
+        let solution = minimize(&mut cycle, &theta, &options, &mut |_| Control::Continue);
+        assert_eq!(solution.interior_solves, 0, "Clarabel allocates");
+        iterations = solution.iterations;
+    });
+    (counted.count_total, iterations)
+}
+
+#[test]
+fn iterations_do_not_allocate() {
+    for gait in GAITS {
+        for criterion in Criterion::ALL {
+            let (few, none) = allocations(*gait, criterion, 0);
+            let (all, many) = allocations(*gait, criterion, 400);
+            assert!(none == 0 && many > 5, "{many} iterations");
+            assert_eq!(all, few, "{} {criterion:?}: allocations in {many} iterations", gait.description().gait);
+        }
+    }
+}
