@@ -10,6 +10,8 @@ use std::borrow::Cow;
 /// What a gait is made of, in numbers.
 #[derive(Clone, Debug)]
 pub struct Description {
+    /// What the command line calls it: `trot`, or `rabbit/walk` for a gait of a further robot.
+    pub key: &'static str,
     pub gait: &'static str,
     pub robot: &'static str,
     /// m/s², along −Yf.
@@ -129,6 +131,11 @@ impl Description {
     /// Tells one robot and gait from another: a hash of all of its numbers.
     pub fn fingerprint(&self) -> String {
         format!("{:016x}", hash(&format!("{self:?}")))
+    }
+
+    /// Whether it is a gait of the build's first robot, which the command line needs no name for.
+    pub fn is_of_first_robot(&self) -> bool {
+        !self.key.contains('/')
     }
 
     /// Number of joints.

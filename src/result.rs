@@ -163,7 +163,7 @@ impl GaitResult {
     fn empty(gait: &dyn Gait, criterion: Criterion, speed: f64, search: SearchEntry) -> GaitResult {
         let d = gait.description();
         GaitResult {
-            gait: d.gait.into(),
+            gait: d.key.into(),
             robot: d.robot.into(),
             criterion,
             speed,

@@ -33,7 +33,7 @@ fn records(wanted: impl Fn(&Record) -> bool) -> Vec<Record> {
 }
 
 fn named(name: &str) -> &'static dyn Gait {
-    GAITS.iter().copied().find(|g| g.description().gait == name).unwrap()
+    GAITS.iter().copied().find(|g| g.description().key == name).unwrap()
 }
 
 /// Knees bend either way, haunches have no stops, the platform keeps off the ground.

@@ -116,3 +116,16 @@ fn an_infeasible_speed_is_said_and_fails() {
     let nearest = result["nearest_speed"].as_f64().unwrap();
     assert!((1.0..1.3).contains(&nearest), "{nearest}");
 }
+
+#[test]
+fn a_gait_is_chosen_together_with_its_robot() {
+    let out = piaffe(&["optimize", "rabbit/walk", "--speed", "0.6", "--starts", "2", "--json", "-"], "");
+    assert!(out.status.success(), "{}", text(&out.stderr));
+    let result: Value = serde_json::from_slice(&out.stdout).unwrap();
+    assert_eq!((&result["gait"], &result["robot"]), (&"rabbit/walk".into(), &"RABBIT".into()));
+    assert!(result["receipt"]["max_violation"].as_f64().unwrap() < 1e-6);
+
+    let out = piaffe(&["optimize", "rabit/walk", "--speed", "0.6"], "");
+    assert_eq!(out.status.code(), Some(2));
+    assert!(text(&out.stderr).contains("'rabbit/walk'"), "{}", text(&out.stderr));
+}

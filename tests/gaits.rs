@@ -14,7 +14,7 @@ fn optimize(gait: &dyn Gait, criterion: Criterion, speed: f64, starts: usize) ->
 }
 
 fn named(name: &str) -> &'static dyn Gait {
-    GAITS.iter().copied().find(|g| g.description().gait == name).unwrap()
+    GAITS.iter().copied().find(|g| g.description().key == name).unwrap()
 }
 
 #[test]

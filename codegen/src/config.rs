@@ -7,16 +7,20 @@ use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
-/// What a build script asks for: a robot, its gaits, and where the generated code will live.
+/// What a build script asks for: a folder with a robot and its gaits, and where the generated code will live.
+///
+/// The folder holds `robot.toml` and `gaits/*.toml`. Folders in it that hold the same are further robots; each is
+/// known by its folder's name. Every file there is compiled: a new robot or gait needs no other change.
 ///
 /// ```no_run
-/// piaffe_codegen::Config::new("model-spec/robot.toml").gait("model-spec/gaits/trot.toml").compile();
+/// piaffe_codegen::Config::new("model-spec").compile();
 /// ```
+///
+/// The code is included where the package wants it to be, `include!(concat!(env!("OUT_DIR"), "/gaits.rs"));`.
 #[derive(Clone, Debug)]
 pub struct Config {
-    robot: PathBuf,
-    gaits: Vec<PathBuf>,
-    runtime: String,
+    folder: PathBuf,
+    runtime: Option<String>,
 }
 
 /// A specification file: its path as shown in messages and its text.
@@ -26,23 +30,33 @@ pub struct SpecFile {
     pub text: String,
 }
 
+/// A robot's file with those of its gaits.
+#[derive(Clone, Debug)]
+pub struct RobotFiles {
+    /// Module of its gaits; empty for a robot whose gaits need none.
+    pub module: String,
+    pub robot: SpecFile,
+    pub gaits: Vec<SpecFile>,
+}
+
 /// A generated file: name and contents.
 pub type Generated = (String, String);
 
 impl Config {
-    /// Paths are relative to the package's root.
-    pub fn new(robot: impl Into<PathBuf>) -> Config {
-        Config { robot: robot.into(), gaits: Vec::new(), runtime: "::piaffe::model".into() }
-    }
-
-    pub fn gait(mut self, path: impl Into<PathBuf>) -> Config {
-        self.gaits.push(path.into());
-        self
+    /// The folder's path is relative to the package's root.
+    pub fn new(folder: impl Into<PathBuf>) -> Config {
+        Config { folder: folder.into(), runtime: Some("::piaffe::model".into()) }
     }
 
     /// Path of the module that has the `Gait` trait, as seen from the generated code.
     pub fn runtime(mut self, path: &str) -> Config {
-        self.runtime = path.into();
+        self.runtime = Some(path.into());
+        self
+    }
+
+    /// Functions over arrays and nothing else: the code then needs neither `std` nor the crate `piaffe`.
+    pub fn functions_only(mut self) -> Config {
+        self.runtime = None;
         self
     }
 
@@ -63,59 +77,113 @@ impl Config {
             env::var_os("CARGO_MANIFEST_DIR").ok_or("CARGO_MANIFEST_DIR is not set: run this from a build script")?,
         );
         let out = PathBuf::from(env::var_os("OUT_DIR").ok_or("OUT_DIR is not set: run this from a build script")?);
-        for path in self.gaits.iter().chain([&self.robot]) {
-            println!("cargo::rerun-if-changed={}", path.display());
-        }
+        println!("cargo::rerun-if-changed={}", self.folder.display());
         let started = std::time::Instant::now();
-        let robot = read(&root, &self.robot)?;
-        let gaits = self.gaits.iter().map(|p| read(&root, p)).collect::<Result<Vec<_>, _>>()?;
-        for (name, source) in generate(&robot, &gaits, &self.runtime)? {
+        let robots = robots(&root, &self.folder)?;
+        for (name, source) in generate(&robots, self.runtime.as_deref())? {
             write_if_changed(&out.join(&name), &source).map_err(|e| format!("cannot write {name}: {e}"))?;
         }
-        println!("piaffe-codegen: {} gaits in {:.0} ms", gaits.len(), started.elapsed().as_secs_f64() * 1e3);
+        let gaits: usize = robots.iter().map(|r| r.gaits.len()).sum();
+        println!("piaffe-codegen: {gaits} gaits in {:.0} ms", started.elapsed().as_secs_f64() * 1e3);
         Ok(())
     }
 }
 
+/// The robots of a folder: its own first, then those of the folders in it, by name.
+fn robots(root: &Path, folder: &Path) -> Result<Vec<RobotFiles>, String> {
+    let mut robots = Vec::new();
+    let own = folder.join("robot.toml");
+    if root.join(&own).exists() {
+        robots.push(robot_files(root, folder, String::new())?);
+    }
+    for path in entries(root, folder)? {
+        if root.join(&path).join("robot.toml").exists() {
+            let module = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            robots.push(robot_files(root, &path, module)?);
+        }
+    }
+    if robots.is_empty() {
+        return Err(format!("there is no robot in {}: write {}", folder.display(), own.display()));
+    }
+    Ok(robots)
+}
+
+fn robot_files(root: &Path, folder: &Path, module: String) -> Result<RobotFiles, String> {
+    let gaits = folder.join("gaits");
+    let mut files = Vec::new();
+    for path in entries(root, &gaits)? {
+        if path.extension().is_some_and(|e| e == "toml") {
+            files.push(read(root, &path)?);
+        }
+    }
+    if files.is_empty() {
+        return Err(format!("there is no gait in {}: write one, for example {0}/trot.toml", gaits.display()));
+    }
+    Ok(RobotFiles { module, robot: read(root, &folder.join("robot.toml"))?, gaits: files })
+}
+
+/// What is in a folder, by name.
+fn entries(root: &Path, folder: &Path) -> Result<Vec<PathBuf>, String> {
+    let failed = |e: io::Error| format!("cannot read the folder {}: {e}", folder.display());
+    let mut entries = Vec::new();
+    for entry in fs::read_dir(root.join(folder)).map_err(failed)? {
+        entries.push(folder.join(entry.map_err(failed)?.file_name()));
+    }
+    entries.sort();
+    Ok(entries)
+}
+
 /// The whole of code generation as a pure function: specification texts → source files.
+///
+/// `runtime` is the path of the module that has the `Gait` trait; without it there are functions only.
 ///
 /// # Errors
 /// The rendered diagnostics, if the specification has mistakes.
-pub fn generate(robot: &SpecFile, gaits: &[SpecFile], runtime: &str) -> Result<Vec<Generated>, String> {
-    let robot_file = spec::parse_robot(&robot.path, &robot.text).map_err(|e| render(&e))?;
+pub fn generate(robots: &[RobotFiles], runtime: Option<&str>) -> Result<Vec<Generated>, String> {
     let mut mistakes = Vec::new();
-    let mut parsed = Vec::new();
-    for file in gaits {
-        match spec::parse_gait(&file.path, &file.text, &robot_file) {
-            Ok(gait) => parsed.push((file, gait)),
-            Err(e) => mistakes.extend(e),
+    let mut modules = Vec::new();
+    let mut jobs = Vec::new();
+    for files in robots {
+        let robot = match spec::parse_robot(&files.robot.path, &files.robot.text) {
+            Ok(robot) => robot,
+            Err(e) => {
+                mistakes.extend(e);
+                continue;
+            }
+        };
+        let mut names = Vec::new();
+        for file in &files.gaits {
+            match spec::parse_gait(&file.path, &file.text, &robot) {
+                Ok(gait) => {
+                    names.push(gait.name.clone());
+                    let robot = robot.robot.locked(&gait.locked).map_err(|t| format!("`{}` is tilted", t.joint))?;
+                    jobs.push((&files.module, Mechanism::new(&robot, &gait), origin(&[&files.robot, file])));
+                }
+                Err(e) => mistakes.extend(e),
+            }
         }
+        modules.push((files.module.as_str(), names));
     }
     if !mistakes.is_empty() {
         return Err(render(&mistakes));
     }
+    emit::check_modules(&modules)?;
     // Gaits do not know of each other: one thread each, joined in order.
-    let robot_spec = &robot_file.robot;
-    let sources: Vec<Result<String, String>> = std::thread::scope(|scope| {
-        let running: Vec<_> = parsed
+    let mut files = std::thread::scope(|scope| {
+        let running: Vec<_> = jobs
             .iter()
-            .map(|(file, gait)| {
+            .map(|(module, mechanism, origin)| {
                 scope.spawn(move || {
-                    let robot_spec = robot_spec.locked(&gait.locked).map_err(|t| format!("`{}` is tilted", t.joint))?;
-                    emit::gait_source(&Mechanism::new(&robot_spec, gait), runtime, &origin(&[robot, file]))
+                    let source = emit::gait_source(mechanism, module, runtime, origin)?;
+                    Ok((emit::file_name(module, &mechanism.gait), source))
                 })
             })
             .collect();
         let stopped = |_| Err("the generator stopped: a defect of piaffe-codegen".to_string());
-        running.into_iter().map(|thread| thread.join().unwrap_or_else(stopped)).collect()
-    });
-    let mut files = Vec::new();
-    for ((_, gait), source) in parsed.iter().zip(sources) {
-        files.push((format!("{}.rs", emit::module_name(&gait.name)), source?));
-    }
-    let names: Vec<String> = parsed.into_iter().map(|(_, gait)| gait.name).collect();
-    let all: Vec<&SpecFile> = std::iter::once(robot).chain(gaits).collect();
-    files.push(("gaits.rs".into(), emit::registry_source(&names, runtime, &origin(&all))));
+        running.into_iter().map(|thread| thread.join().unwrap_or_else(stopped)).collect::<Result<Vec<_>, String>>()
+    })?;
+    let all: Vec<&SpecFile> = robots.iter().flat_map(|r| std::iter::once(&r.robot).chain(&r.gaits)).collect();
+    files.push(("gaits.rs".into(), emit::registry_source(&modules, runtime, &origin(&all))));
     Ok(files)
 }
 
@@ -146,5 +214,6 @@ fn write_if_changed(path: &Path, contents: &str) -> io::Result<()> {
     if fs::read(path).is_ok_and(|old| old == contents.as_bytes()) {
         return Ok(());
     }
+    path.parent().map_or(Ok(()), fs::create_dir_all)?;
     fs::write(path, contents)
 }

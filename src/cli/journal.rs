@@ -42,7 +42,7 @@ struct State {
 
 /// Name of a point's file.
 pub fn file(gait: &str, criterion: Criterion, speed: f64) -> String {
-    format!("{gait}-{}-{speed:.4}.json", criterion.name())
+    format!("{}-{}-{speed:.4}.json", gait.replace('/', "-"), criterion.name())
 }
 
 impl Folder {
@@ -86,7 +86,7 @@ impl Folder {
         }
         for (gait, criterion) in gaits.iter().flat_map(|g| criteria.iter().map(move |c| (g, *c))) {
             for speed in speeds {
-                let path = self.path.join(file(gait.description().gait, criterion, *speed));
+                let path = self.path.join(file(gait.description().key, criterion, *speed));
                 let Ok(text) = std::fs::read(&path) else { continue };
                 if let Err(error) = serde_json::from_slice::<GaitResult>(&text) {
                     note(&format!("{} is damaged ({error}): it is written anew", path.display()));
@@ -131,7 +131,7 @@ struct Run {
 impl Run {
     fn new(gaits: &[&dyn Gait], settings: &Settings, earlier: Option<&Run>) -> Run {
         let mut fingerprints = earlier.map(|e| e.fingerprints.clone()).unwrap_or_default();
-        fingerprints.extend(gaits.iter().map(|g| (g.description().gait.into(), g.description().fingerprint())));
+        fingerprints.extend(gaits.iter().map(|g| (g.description().key.into(), g.description().fingerprint())));
         Run { version: env!("CARGO_PKG_VERSION").into(), starts: settings.starts, seed: settings.seed, fingerprints }
     }
 

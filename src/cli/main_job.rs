@@ -1,8 +1,7 @@
 //! The main job: every gait and criterion at 0.6 m/s, beside the values of the paper (§6.2, §6.3).
 
 use super::optimize::{progress, solve};
-use super::output;
-use piaffe::gaits::GAITS;
+use super::{first_robot, output};
 use piaffe::motion::Criterion;
 use piaffe::result::GaitResult;
 use piaffe::search::multi_start::Settings;
@@ -38,10 +37,13 @@ pub fn run(folder: &Path) -> anyhow::Result<bool> {
         "gait", "criterion", "cost", "unit", "half steps, s", "violation", "cycle", "KKT", "paper", "half steps"
     );
     let settings = Settings::default();
-    let bar = progress((GAITS.len() * Criterion::ALL.len() * settings.starts) as u64, "starts");
+    // In the order of the paper.
+    let mut gaits: Vec<_> = first_robot().collect();
+    gaits.sort_by_key(|g| PUBLISHED.iter().position(|p| p.gait == g.description().gait));
+    let bar = progress((gaits.len() * Criterion::ALL.len() * settings.starts) as u64, "starts");
     let mut all = true;
     for criterion in Criterion::ALL {
-        for gait in GAITS {
+        for gait in &gaits {
             let name = gait.description().gait;
             bar.set_message(format!("{name}, {}", criterion.name()));
             let result = solve(*gait, criterion, SPEED, &settings, &bar);

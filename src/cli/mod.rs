@@ -24,7 +24,7 @@ const NO_OPTIMUM: u8 = 3;
 #[command(
     version,
     about = "Optimal gaits of a legged robot, each with a receipt",
-    long_about = "Optimal periodic gaits of the robot in model-spec/, each with a receipt.\n\n\
+    long_about = "Optimal periodic gaits of the robots in model-spec/, each with a receipt.\n\n\
                   Without a command: finds the optimum of every gait and criterion at 0.6 m/s, prints them\n\
                   beside the published values and writes the results to a folder.",
     after_help = "Exit codes: 0 success, 1 something failed, 2 wrong usage, 3 no optimum (infeasible or not converged)."
@@ -78,7 +78,7 @@ enum Command {
         after_help = "Example:\n  piaffe sweep --gait trot --gait amble --criterion all --speeds 0.1..1.6:0.1 --out sweep"
     )]
     Sweep {
-        /// May be given several times; all gaits if it is not given.
+        /// May be given several times; all gaits of the first robot if it is not given.
         #[arg(long, value_parser = gait_names())]
         gait: Vec<String>,
         /// energy, torque or all; may be given several times.
@@ -112,7 +112,7 @@ pub fn run() -> ExitCode {
         Some(Command::Sweep { gait, criterion, speeds, folder, starts, seed }) => {
             let settings = piaffe::search::multi_start::Settings { starts: starts as usize, seed };
             let gaits: Vec<_> =
-                if gait.is_empty() { GAITS.to_vec() } else { gait.iter().map(|g| by_name(g)).collect() };
+                if gait.is_empty() { first_robot().collect() } else { gait.iter().map(|g| by_name(g)).collect() };
             let wanted = |c: &Criterion| criterion.iter().any(|w| w == "all" || w == c.name());
             let criteria: Vec<Criterion> = Criterion::ALL.into_iter().filter(wanted).collect();
             sweep::run(&gaits, &criteria, &speeds, &folder, &settings)
@@ -129,12 +129,17 @@ pub fn run() -> ExitCode {
 }
 
 fn gait_names() -> PossibleValuesParser {
-    PossibleValuesParser::new(GAITS.iter().map(|g| g.description().gait))
+    PossibleValuesParser::new(GAITS.iter().map(|g| g.description().key))
+}
+
+/// The gaits of the robot that needs no name.
+fn first_robot() -> impl Iterator<Item = &'static dyn Gait> {
+    GAITS.iter().copied().filter(|g| g.description().is_of_first_robot())
 }
 
 /// The gait of that name; the parser has admitted no other names.
 fn by_name(name: &str) -> &'static dyn Gait {
-    GAITS.iter().copied().find(|g| g.description().gait == name).unwrap_or(GAITS[0])
+    GAITS.iter().copied().find(|g| g.description().key == name).unwrap_or(GAITS[0])
 }
 
 fn criterion_names() -> PossibleValuesParser {

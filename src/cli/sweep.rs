@@ -116,7 +116,7 @@ impl<'a> Summary<'a> {
         };
         let maximum = |line: &'a Line| {
             let MaximumSpeed { speed, ended_by, .. } = line.maximum.as_ref()?;
-            Some(MaximumEntry { gait: line.gait.description().gait, speed: *speed, ended_by })
+            Some(MaximumEntry { gait: line.gait.description().key, speed: *speed, ended_by })
         };
         Summary {
             points: lines.iter().flat_map(|line| line.results.iter().flatten()).map(point).collect(),
@@ -130,7 +130,7 @@ fn tell(lines: &[Line], criteria: &[Criterion], speeds: &[f64], comparisons: &[C
     let mut out = std::io::stdout().lock();
     out.write_all(table(lines, criteria, speeds).as_bytes())?;
     for line in lines {
-        let name = line.gait.description().gait;
+        let name = line.gait.description().key;
         match &line.maximum {
             Some(m) => {
                 let why = if m.ended_by.is_empty() { "no single constraint".into() } else { m.ended_by[0].clone() };
@@ -150,7 +150,7 @@ fn table(lines: &[Line], criteria: &[Criterion], speeds: &[f64]) -> String {
     let mut text = format!("{:>8}", "m/s");
     for criterion in criteria {
         for line in lines {
-            text += &format!(" {:>16}", format!("{} {}", line.gait.description().gait, criterion.name()));
+            text += &format!(" {:>16}", format!("{} {}", line.gait.description().key, criterion.name()));
         }
     }
     text.push('\n');
@@ -183,7 +183,7 @@ fn words(comparison: &Comparison, lines: &[Line]) -> String {
         cheaper.clone_from(&x.to);
     }
     let ends = lines.iter().find(|line| line.maximum.as_ref().is_some_and(|m| m.speed == last));
-    let until = match ends.map(|line| line.gait.description().gait) {
+    let until = match ends.map(|line| line.gait.description().key) {
         Some(gait) => format!("until the {gait} ends"),
         None => "to the end of the sweep".into(),
     };

@@ -69,7 +69,7 @@ pub fn search_at(
     neighbours: &[Vec<f64>],
     journal: &dyn Journal,
 ) -> (GaitResult, bool) {
-    let name = format!("{} {} {speed} searched", gait.description().gait, criterion.name());
+    let name = format!("{} {} {speed} searched", gait.description().key, criterion.name());
     step(journal, &name, &(common(gait, settings), neighbours), || {
         let started = Instant::now();
         let found = search_from(gait, criterion, speed, settings, neighbours, &|_| {});
@@ -96,7 +96,7 @@ fn carry(
         let Some(theta) = theta(gait, &lines[line][at]) else { continue };
         let point = &lines[c][k];
         let (criterion, speed) = (point.criterion, point.speed);
-        let name = format!("{} {} {speed} carried to", gait.description().gait, criterion.name());
+        let name = format!("{} {} {speed} carried to", gait.description().key, criterion.name());
         let inputs = (common(gait, settings), &point.local_optima, &theta);
         let (changed, fresh) = step(journal, &name, &inputs, || {
             let local = follow(gait, criterion, speed, &theta, &mut |_| Control::Continue);

@@ -65,7 +65,7 @@ pub fn compare(
     let criterion = lines[0].first()?.criterion;
     let pairs = pairs(gaits, lines, settings, journal);
     let (first, last) = (pairs.first()?, pairs.last()?);
-    let names = gaits.map(|g| g.description().gait.to_string());
+    let names = gaits.map(|g| g.description().key.to_string());
     let mut crossovers = Vec::new();
     for w in pairs.windows(2) {
         if w[0].cheaper() != w[1].cheaper() {

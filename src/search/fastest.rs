@@ -36,7 +36,7 @@ pub fn maximum_speed(
 ) -> Option<MaximumSpeed> {
     let fastest = results.iter().filter(|r| r.is_optimal()).max_by(|a, b| a.speed.total_cmp(&b.speed))?;
     let from = theta(gait, fastest)?;
-    let name = format!("{} greatest speed", gait.description().gait);
+    let name = format!("{} greatest speed", gait.description().key);
     step(journal, &name, &(common(gait, settings), fastest.speed, &from), || {
         climb(gait, fastest.speed, &from, settings)
     })

@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector};
 /// What distinguishes one start from another.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Height of the platform's mass centre over the foot, as a share of the straight leg.
+    /// Height of the hips over the foot, as a share of the straight leg.
     pub height: f64,
     /// Duration of each half step, s.
     pub durations: Vec<f64>,
@@ -126,7 +126,7 @@ fn half_step(gait: &dyn Gait, plan: &Plan, k: usize, durations: &[f64], travel: 
 /// Platform and swing foot at `s` of half step `k`.
 fn place(gait: &dyn Gait, plan: &Plan, k: usize, durations: &[f64], travel: f64, s: f64) -> Target {
     let d = gait.description();
-    let height = plan.height * d.leg_length();
+    let height = standing_height(gait) - (1.0 - plan.height) * d.leg_length();
     let lead = plan.lead * d.leg_length();
     let lift = 4.0 * plan.clearance * s * (1.0 - s);
     let glide = s * s * (3.0 - 2.0 * s);
@@ -148,6 +148,14 @@ fn place(gait: &dyn Gait, plan: &Plan, k: usize, durations: &[f64], travel: f64,
         let begin = start + share * travel;
         Target { platform: [begin + (1.0 - share) * travel * s - fore, height], swing: [travel * glide - fore, lift] }
     }
+}
+
+/// Height of the platform's mass centre with all joints at zero, m.
+fn standing_height(gait: &dyn Gait) -> f64 {
+    let d = gait.description();
+    let mut out = vec![0.0; 2 * d.positions() * (1 + d.orientations())];
+    gait.placement(0, &vec![0.0; d.orientations()], &mut out);
+    out[1]
 }
 
 /// Forward distance from foot 1 to foot 2 with all joints at zero, m.

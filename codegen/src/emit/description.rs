@@ -16,7 +16,7 @@ fn floats(values: &[f64]) -> TokenStream {
     quote!([#(#values),*])
 }
 
-pub fn description(m: &Mechanism, functions: &[Function], runtime: &TokenStream) -> TokenStream {
+pub fn description(m: &Mechanism, key: &str, functions: &[Function], runtime: &TokenStream) -> TokenStream {
     let bodies = m.bodies.iter().map(|b| {
         let (name, axis) = (&b.name, b.axis.index());
         let parent = option(b.parent);
@@ -72,7 +72,7 @@ pub fn description(m: &Mechanism, functions: &[Function], runtime: &TokenStream)
     let (duration, height) = (floats(&l.half_step_duration), float(l.min_platform_height));
     quote! {
         #runtime::Description {
-            gait: #gait, robot: #robot, gravity: #gravity, lateral: #lateral,
+            key: #key, gait: #gait, robot: #robot, gravity: #gravity, lateral: #lateral,
             rotation: #runtime::Rotation::#rotation, half_steps: #runtime::HalfSteps::#half_steps,
             bodies: std::borrow::Cow::Borrowed(&[#(#bodies),*]), joints: std::borrow::Cow::Borrowed(&[#(#joints),*]), legs: [#(#legs),*],
             unactuated: #unactuated, polynomial_order: #order, early: [#(#early),*],

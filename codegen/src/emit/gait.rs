@@ -1,19 +1,21 @@
-//! One generated module per gait, and the registry of all.
+//! One generated module per gait.
 
 use super::description::description;
 use super::function::{Function, base_name, ident};
-use super::{MATH, module_name, type_name};
+use super::modules::key;
+use super::type_name;
 use crate::dynamics::{Kernel, Shape, kernels};
 use crate::mechanism::Mechanism;
 use proc_macro2::TokenStream;
 use quote::quote;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Source of one gait's module. `runtime` is the path of the module with the `Gait` trait.
+/// Source of one gait's module, of a robot with or without a module of its own. `runtime` is the path of the
+/// module with the `Gait` trait; without it there are functions only.
 ///
 /// # Errors
 /// If what was generated is not Rust: a defect of the generator.
-pub fn gait_source(mechanism: &Mechanism, runtime: &str, origin: &str) -> Result<String, String> {
+pub fn gait_source(mechanism: &Mechanism, robot: &str, runtime: Option<&str>, origin: &str) -> Result<String, String> {
     let (model, kernels) = kernels(mechanism);
     let functions: Vec<Function> = kernels.iter().map(|k| Function::new(&model.ring, k)).collect();
     let mut structs = BTreeSet::new();
@@ -26,14 +28,27 @@ pub fn gait_source(mechanism: &Mechanism, runtime: &str, origin: &str) -> Result
         }
         items.extend(function.source());
     }
-    let runtime: TokenStream = runtime.parse().map_err(|e| format!("`{runtime}` is not a path: {e}"))?;
-    let name = ident(&type_name(&mechanism.gait));
-    let doc = format!(" The {} of `{}`.", mechanism.gait, mechanism.robot);
-    let description = description(mechanism, &functions, &runtime);
-    let methods = methods(&functions);
+    let gait = match runtime {
+        Some(runtime) => implementation(mechanism, &key(robot, &mechanism.gait), &functions, runtime)?,
+        None => TokenStream::new(),
+    };
     let file = quote! {
         use super::math;
         #items
+        #gait
+    };
+    let parsed = syn::parse2::<syn::File>(file).map_err(|e| format!("generated code does not parse: {e}"))?;
+    Ok(format!("// {origin}\n{}", prettyplease::unparse(&parsed)))
+}
+
+/// The gait's type with its description and its `impl Gait`.
+fn implementation(m: &Mechanism, key: &str, functions: &[Function], runtime: &str) -> Result<TokenStream, String> {
+    let runtime: TokenStream = runtime.parse().map_err(|e| format!("`{runtime}` is not a path: {e}"))?;
+    let name = ident(&type_name(&m.gait));
+    let doc = format!(" The {} of `{}`.", m.gait, m.robot);
+    let description = description(m, key, functions, &runtime);
+    let methods = methods(functions);
+    Ok(quote! {
         #[doc = #doc]
         #[derive(Clone, Copy, Debug, Default)]
         pub struct #name;
@@ -43,28 +58,7 @@ pub fn gait_source(mechanism: &Mechanism, runtime: &str, origin: &str) -> Result
             fn description(&self) -> &#runtime::Description { &DESCRIPTION }
             #methods
         }
-    };
-    let parsed = syn::parse2::<syn::File>(file).map_err(|e| format!("generated code does not parse: {e}"))?;
-    Ok(format!("// {origin}\n{}", prettyplease::unparse(&parsed)))
-}
-
-/// Source of the module that holds all gaits of a build.
-pub fn registry_source(gaits: &[String], runtime: &str, origin: &str) -> String {
-    let mut source =
-        format!("// {origin}\n/// Elementary functions with pinned results.\npub mod math {{\n{MATH}\n}}\n");
-    for gait in gaits {
-        let module = module_name(gait);
-        source += &format!(
-            "/// Generated dynamics of the {gait}.\n#[rustfmt::skip]\n#[allow(clippy::all, clippy::pedantic)]\n\
-             pub mod {module} {{\n    include!(concat!(env!(\"OUT_DIR\"), \"/{module}.rs\"));\n}}\n"
-        );
-    }
-    source += &format!("/// All gaits of this build.\npub static GAITS: &[&dyn {runtime}::Gait] = &[");
-    for gait in gaits {
-        source += &format!("&{}::{}, ", module_name(gait), type_name(gait));
-    }
-    source += "];\n";
-    source
+    })
 }
 
 /// Trait methods: per kernel one that takes slices and writes all outputs one after another.

@@ -7,8 +7,10 @@
 mod description;
 mod function;
 mod gait;
+mod modules;
 
-pub use gait::{gait_source, registry_source};
+pub use gait::gait_source;
+pub use modules::{check_modules, file_name, registry_source};
 
 /// The pinned sine and cosine, as source: part of every generated module.
 pub const MATH: &str = include_str!("../../support/math.rs");

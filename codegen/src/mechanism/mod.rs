@@ -44,7 +44,7 @@ pub struct Body {
     pub inertia: Inertia,
 }
 
-/// An actuated joint, seen at the joint: N·m, rad/s.
+/// An actuated joint of a virtual leg, seen at the joint: N·m, rad/s.
 #[derive(Clone, Debug)]
 pub struct Actuated {
     pub name: String,
@@ -53,7 +53,7 @@ pub struct Actuated {
     pub max_torque: f64,
     pub unloaded_speed: f64,
     pub loaded_speed: f64,
-    /// Rotor inertia times gear², kg·m².
+    /// Rotor inertias times gear², kg·m².
     pub rotor_inertia: f64,
 }
 
@@ -111,7 +111,7 @@ impl Mechanism {
                     com: link.com,
                     inertia: link.inertia,
                 });
-                joints.push(Actuated::new(&segment.joint, k + 1));
+                joints.push(Actuated::new(&segment.joint, k + 1, gait.virtual_legs[k].len()));
                 parent = bodies.len() - 1;
                 offset = link.end;
             }
@@ -180,17 +180,19 @@ impl Mechanism {
 }
 
 impl Actuated {
-    fn new(joint: &Joint, leg: usize) -> Actuated {
+    /// The joint of a virtual leg, which the motors of all its `members` drive.
+    fn new(joint: &Joint, leg: usize, members: usize) -> Actuated {
         let a = &joint.actuator;
+        let motors = members as f64;
         let joint_speed = |rev_per_min: f64| rev_per_min * std::f64::consts::TAU / 60.0 / a.gear;
         Actuated {
             name: format!("{}{leg}", joint.name),
             range: joint.range,
             gear: a.gear,
-            max_torque: a.max_torque * a.gear,
+            max_torque: motors * a.max_torque * a.gear,
             unloaded_speed: joint_speed(a.unloaded_speed),
             loaded_speed: joint_speed(a.loaded_speed),
-            rotor_inertia: a.rotor_inertia * a.gear * a.gear,
+            rotor_inertia: motors * a.rotor_inertia * a.gear * a.gear,
         }
     }
 }

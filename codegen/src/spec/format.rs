@@ -20,7 +20,7 @@ pub(super) static ROBOT: Table = Table {
         ),
         Key::new("joints", Map(&[&JOINT]), "", "The rotating joints; with their links they form the legs' chains."),
         Key::new("legs", Map(&[&LEG]), "", "Where each leg hangs on the platform."),
-        Key::new("actuators", Map(&[&ACTUATOR]), "", "The motors, stated for a virtual leg's joint."),
+        Key::new("actuators", Map(&[&ACTUATOR]), "", "The motors, one for each joint of each leg."),
     ],
 };
 
@@ -120,7 +120,7 @@ pub(super) static LEG: Table = Table {
 
 pub(super) static ACTUATOR: Table = Table {
     noun: "an actuator",
-    doc: "The motor of a virtual leg's joint.",
+    doc: "The motor of a joint. A virtual leg has as many of them as it has legs.",
     keys: &[
         Key::new("gear", Number(Positive), "motor turns per joint turn", "Gear ratio."),
         Key::new("max_torque", Number(Positive), "N·m at the motor", "Greatest torque."),

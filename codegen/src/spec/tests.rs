@@ -52,7 +52,7 @@ fn the_shipped_robot() {
     let motor = |name: &str, unloaded_speed, loaded_speed| Actuator {
         name: name.into(),
         gear: 50.0,
-        max_torque: 0.8,
+        max_torque: 0.4,
         unloaded_speed,
         loaded_speed,
         rotor_inertia: 0.0,

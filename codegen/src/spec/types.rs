@@ -88,7 +88,7 @@ pub struct Link {
     pub inertia: Inertia,
 }
 
-/// The actuator of a virtual leg's joint.
+/// The motor of one joint of one leg.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Actuator {
     pub name: String,

@@ -7,7 +7,16 @@ use piaffe_codegen::mechanism::Mechanism;
 use piaffe_codegen::spec::{parse_gait, parse_robot};
 use std::collections::BTreeMap;
 
-pub const GAITS: [&str; 3] = ["trot", "curvet", "amble"];
+pub const GAITS: [&str; 4] = ["trot", "curvet", "amble", "rabbit/walk"];
+
+/// Module, robot and gait of a shipped gait.
+pub fn files(key: &str) -> (&str, SpecFile, SpecFile) {
+    let (module, folder, gait) = match key.split_once('/') {
+        Some((module, gait)) => (module, format!("{module}/"), gait),
+        None => ("", String::new(), key),
+    };
+    (module, spec_file(&format!("{folder}robot.toml")), spec_file(&format!("{folder}gaits/{gait}.toml")))
+}
 
 /// The text of a file of the shipped specification.
 pub fn spec_file(path: &str) -> SpecFile {
@@ -17,10 +26,10 @@ pub fn spec_file(path: &str) -> SpecFile {
 
 /// The mechanism of a shipped gait.
 pub fn shipped(gait: &str) -> Mechanism {
-    let (robot, gait) = (spec_file("robot.toml"), spec_file(&format!("gaits/{gait}.toml")));
+    let (_, robot, gait) = files(gait);
     let robot = parse_robot(&robot.path, &robot.text).unwrap();
     let gait = parse_gait(&gait.path, &gait.text, &robot).unwrap();
-    Mechanism::new(&robot.robot, &gait)
+    Mechanism::new(&robot.robot.locked(&gait.locked).unwrap(), &gait)
 }
 
 /// A mechanism with all its kernels as expressions.

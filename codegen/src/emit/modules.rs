@@ -1,0 +1,103 @@
+//! The registry of all gaits: a module for each, in those of their robots.
+
+use super::{MATH, module_name, type_name};
+
+/// What the program calls a gait: `trot`, or `rabbit/walk` for one whose robot has a module.
+pub fn key(robot: &str, gait: &str) -> String {
+    if robot.is_empty() { gait.into() } else { format!("{robot}/{gait}") }
+}
+
+/// Name of the generated file of a gait.
+pub fn file_name(robot: &str, gait: &str) -> String {
+    key(robot, &format!("{}.rs", module_name(gait)))
+}
+
+/// Modules in one place need different names that are names in Rust.
+///
+/// # Errors
+/// What to rename.
+pub fn check_modules(robots: &[(&str, Vec<String>)]) -> Result<(), String> {
+    let mut top = vec!["math".to_string(), "gaits".to_string()];
+    for (robot, gaits) in robots {
+        let mut own = top.clone();
+        let taken = if robot.is_empty() { &mut top } else { &mut own };
+        for gait in gaits {
+            let module = module_name(gait);
+            if taken.contains(&module) {
+                let of = if robot.is_empty() { String::new() } else { format!(" of the robot `{robot}`") };
+                return Err(format!("a gait{of} cannot be called `{gait}`: there is a module `{module}` already"));
+            }
+            taken.push(module);
+        }
+    }
+    for (robot, _) in robots.iter().filter(|(robot, _)| !robot.is_empty()) {
+        let why = if syn::parse_str::<syn::Ident>(robot).is_err() {
+            "this is no name in Rust"
+        } else if *robot != module_name(robot) {
+            "write it in small letters"
+        } else if top.iter().any(|t| t == robot) {
+            "there is a gait or module of that name already"
+        } else {
+            top.push((*robot).to_string());
+            continue;
+        };
+        return Err(format!("a robot's folder cannot be called `{robot}`: {why}"));
+    }
+    Ok(())
+}
+
+/// Source of the module that holds all gaits of a build.
+pub fn registry_source(robots: &[(&str, Vec<String>)], runtime: Option<&str>, origin: &str) -> String {
+    let mut source =
+        format!("// {origin}\n/// Elementary functions with pinned results.\npub mod math {{\n{MATH}\n}}\n");
+    let mut all = Vec::new();
+    for (robot, gaits) in robots {
+        let modules: String = gaits.iter().map(|gait| gait_module(robot, gait)).collect();
+        if robot.is_empty() {
+            source += &modules;
+        } else {
+            source +=
+                &format!("/// Gaits of the robot `{robot}`.\npub mod {robot} {{\n    use super::math;\n{modules}}}\n");
+        }
+        let inside = if robot.is_empty() { String::new() } else { format!("{robot}::") };
+        all.extend(gaits.iter().map(|gait| format!("&{inside}{}::{}", module_name(gait), type_name(gait))));
+    }
+    if let Some(runtime) = runtime {
+        let all = all.join(", ");
+        source += &format!("/// All gaits of this build.\npub static GAITS: &[&dyn {runtime}::Gait] = &[{all}];\n");
+    }
+    source
+}
+
+fn gait_module(robot: &str, gait: &str) -> String {
+    let (module, file) = (module_name(gait), file_name(robot, gait));
+    format!(
+        "/// Generated dynamics of the {gait}.\n#[rustfmt::skip]\n#[allow(clippy::all, clippy::pedantic)]\n\
+         pub mod {module} {{\n    include!(concat!(env!(\"OUT_DIR\"), \"/{file}\"));\n}}\n"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn modules_need_names_of_their_own() {
+        let check = |robots: &[(&str, &[&str])]| {
+            let robots: Vec<_> = robots.iter().map(|(r, g)| (*r, g.iter().map(|g| g.to_string()).collect())).collect();
+            check_modules(&robots)
+        };
+        assert_eq!(check(&[("", &["trot", "amble"]), ("rabbit", &["walk"]), ("a1", &["trot"])]), Ok(()));
+        for bad in [
+            [("", &["trot", "Trot"][..]), ("rabbit", &["walk"])],
+            [("", &["math"]), ("rabbit", &["walk"])],
+            [("", &["trot"]), ("rabbit", &["gaits"])],
+            [("", &["trot"]), ("trot", &["walk"])],
+            [("", &["trot"]), ("fn", &["walk"])],
+            [("", &["trot"]), ("two words", &["walk"])],
+            [("", &["trot"]), ("Rabbit", &["walk"])],
+        ] {
+            assert!(check(&bad).is_err(), "{bad:?}");
+        }
+    }
+}
