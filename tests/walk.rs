@@ -55,7 +55,9 @@ fn a_virtual_foot_is_the_mean_of_its_real_feet_and_that_of_the_kernel() {
         for m in &walk.moments {
             let swings = 1 - m.stance;
             let foot = *m.virtual_chain(d, swings).last().unwrap();
-            assert!(distance(foot, m.swing) < 1e-12, "{}", d.gait);
+            // The kernels of a planar gait do not know how far beside its plane a leg is.
+            let known = if d.lateral { foot } else { [foot[0], foot[1], m.swing[2]] };
+            assert!(distance(known, m.swing) < 1e-12, "{}", d.gait);
             let members = d.legs[swings].members.len();
             let feet = (0..members).map(|i| *m.chain(d, swings, i).last().unwrap());
             let mean = feet.fold([0.0; 3], |a, f| [0, 1, 2].map(|k| a[k] + f[k] / members as f64));
