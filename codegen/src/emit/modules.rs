@@ -17,9 +17,10 @@ pub fn file_name(robot: &str, gait: &str) -> String {
 /// # Errors
 /// What to rename.
 pub fn check_modules(robots: &[(&str, Vec<String>)]) -> Result<(), String> {
-    let mut top = vec!["math".to_string(), "gaits".to_string()];
+    let reserved = ["math".to_string(), "gaits".to_string()];
+    let mut top = reserved.to_vec();
     for (robot, gaits) in robots {
-        let mut own = top.clone();
+        let mut own = reserved.to_vec();
         let taken = if robot.is_empty() { &mut top } else { &mut own };
         for gait in gaits {
             let module = module_name(gait);
