@@ -8,7 +8,7 @@ use super::dense::{axpy, dot, max_abs, multiply};
 use super::merit::Promise;
 use super::run::{Phase, Run};
 use super::screening::Trouble;
-use super::{Kind, Problem};
+use super::{Kind, Problem, Undefined};
 
 /// Price of a violation, in units of ‖∇f‖∞, at which constraints give way only if they contradict each other.
 const PROHIBITIVE: f64 = 1e6;
@@ -93,6 +93,19 @@ impl<P: Problem> Run<'_, '_, P> {
         }
         self.merit.raise(penalty);
         Ok(self.conclude(Kind::Elastic))
+    }
+
+    /// Multipliers for the first exact Hessian: those of a subproblem that keeps near the iterate. Without them the constraints'
+    /// curvature would be missing, and the first steps of a start near the optimum would lead away from it.
+    pub(super) fn estimate_multipliers(&mut self) -> Result<(), Undefined> {
+        self.distrust = true;
+        let solved = self.plain_step(false, self.prohibitive());
+        self.distrust = false;
+        if solved.is_ok() && !self.subproblem.yielding {
+            self.lambda.copy_from_slice(&self.subproblem.lambda);
+            self.mu.copy_from_slice(&self.subproblem.mu);
+        }
+        self.subproblem.gather(&self.view, &self.point, &self.mu)
     }
 
     fn prohibitive(&self) -> f64 {

@@ -132,7 +132,8 @@ impl<'a, 'p, P: Problem> Run<'a, 'p, P> {
         }
         self.merit.ceiling = self.point.violation;
         self.forget();
-        self.subproblem.gather(&self.view, &self.point, &self.mu)
+        self.subproblem.gather(&self.view, &self.point, &self.mu)?;
+        if self.exact { self.estimate_multipliers() } else { Ok(()) }
     }
 
     /// Curvature before any is known: the unconstrained step has the length of `Options::initial_step`.
