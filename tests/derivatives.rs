@@ -1,5 +1,6 @@
 //! Every derivative that the optimizer uses, against central differences of the same path.
 
+use piaffe::altered::Altered;
 use piaffe::cycle::{Cycle, ELEMENTS};
 use piaffe::gaits::GAITS;
 use piaffe::model::Gait;
@@ -102,12 +103,13 @@ fn check(gait: &dyn Gait, criterion: Criterion, seed: u64) {
 }
 
 #[test]
-fn gradients_agree_with_differences_for_every_gait_and_criterion() {
+fn gradients_agree_with_differences_for_every_gait_criterion_and_order() {
     for gait in GAITS {
         for criterion in Criterion::ALL {
             for seed in 0..3 {
                 check(*gait, criterion, seed);
             }
+            check(&Altered::of_order(*gait, 6), criterion, 0);
         }
     }
 }

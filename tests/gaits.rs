@@ -1,5 +1,6 @@
 //! The whole way: from geometry to an optimum with a receipt, for every gait and criterion.
 
+use piaffe::altered::Altered;
 use piaffe::gaits::GAITS;
 use piaffe::model::Gait;
 use piaffe::motion::{Criterion, Motion};
@@ -15,6 +16,19 @@ fn optimize(gait: &dyn Gait, criterion: Criterion, speed: f64, starts: usize) ->
 
 fn named(name: &str) -> &'static dyn Gait {
     GAITS.iter().copied().find(|g| g.description().key == name).unwrap()
+}
+
+#[test]
+fn polynomials_of_higher_order_need_less_work_and_torque() {
+    for (name, criterion) in [("trot", Criterion::Energy), ("trot", Criterion::Torque), ("amble", Criterion::Torque)] {
+        let costs = [4, 6, 8].map(|order| {
+            let result = optimize(&Altered::of_order(named(name), order), criterion, 0.6, 2);
+            assert_eq!(result.status, Status::Optimal, "{name} {criterion:?}, order {order}: {}", result.message);
+            assert_eq!((result.polynomial_order, result.variables[0].q_interior.len()), (order, order - 3));
+            result.cost.unwrap()
+        });
+        assert!(costs[1] < 0.99 * costs[0] && costs[2] < 0.999 * costs[1], "{name} {criterion:?}: {costs:?}");
+    }
 }
 
 #[test]

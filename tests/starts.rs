@@ -1,0 +1,69 @@
+//! Many random starts: how the searches end, and in how many different optima.
+
+use piaffe::gaits::GAITS;
+use piaffe::model::Gait;
+use piaffe::motion::Criterion;
+use piaffe::result::{GaitResult, Status};
+use piaffe::search::local::{Local, descend};
+use piaffe::search::multi_start::{Found, Optimum, start};
+use piaffe::sqp::Control;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+const STARTS: usize = 500;
+const SPEED: f64 = 0.6;
+/// Share of the starts that must end in a local optimum with its receipt.
+const GOOD: f64 = 0.8;
+
+fn result(gait: &dyn Gait, criterion: Criterion, local: &Local) -> GaitResult {
+    let optimal = local.status.is_optimal();
+    let optima = optimal.then(|| Optimum { local: local.clone(), reached: 1 }).into_iter().collect();
+    let found = Found { optima, failure: (!optimal).then(|| local.clone()), starts: 1 };
+    GaitResult::new(gait, criterion, SPEED, &found, 1, || 0.0)
+}
+
+/// Whether all numbers that could reach a person are numbers.
+fn finite(local: &Local, result: &GaitResult) -> bool {
+    let own = [local.costs.energy, local.costs.torque, local.kkt.stationarity, local.kkt.violation];
+    let told = [result.cost.unwrap_or(0.0), result.step_length.unwrap_or(0.0)];
+    let conflicts = result.conflicts.iter().flat_map(|c| [c.time, c.violation, c.weight]);
+    local.theta.iter().copied().chain(own).chain(told).chain(conflicts).all(f64::is_finite)
+}
+
+#[test]
+#[ignore = "minutes"]
+fn most_random_starts_end_in_an_optimum() {
+    let mut short = Vec::new();
+    for (gait, criterion) in GAITS.iter().flat_map(|g| Criterion::ALL.map(|c| (*g, c))) {
+        let ends: Vec<(Local, GaitResult)> = (0..STARTS)
+            .into_par_iter()
+            .map(|k| {
+                let theta = start(gait, criterion, SPEED, 1, k);
+                let local = descend(gait, criterion, SPEED, &theta, &mut |_| Control::Continue);
+                let result = result(gait, criterion, &local);
+                (local, result)
+            })
+            .collect();
+        let name = format!("{} {}", gait.description().gait, criterion.name());
+        let mut statuses: BTreeMap<String, usize> = BTreeMap::new();
+        let mut optima: Vec<(f64, usize)> = Vec::new();
+        for (k, (local, result)) in ends.iter().enumerate() {
+            assert!(finite(local, result), "{name}: start {k} ends in {local:?}");
+            *statuses.entry(format!("{:?} ({:?})", result.status, local.status)).or_default() += 1;
+            if let Some(cost) = result.cost {
+                match optima.iter_mut().find(|(known, _)| (known / cost - 1.0).abs() < 1e-4) {
+                    Some((_, reached)) => *reached += 1,
+                    None => optima.push((cost, 1)),
+                }
+            }
+        }
+        optima.sort_by(|a, b| a.0.total_cmp(&b.0));
+        println!("{name}: {statuses:?}");
+        println!("  {} optima: {:.4?}", optima.len(), &optima[..optima.len().min(12)]);
+        let good = ends.iter().filter(|(_, r)| r.status == Status::Optimal).count();
+        if (good as f64) < GOOD * STARTS as f64 {
+            short.push(format!("{name}: {good} of {STARTS}"));
+        }
+    }
+    assert!(short.is_empty(), "too few optima: {short:?}");
+}
