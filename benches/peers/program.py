@@ -267,7 +267,7 @@ class Program:
                                     ["triu_hess_gamma_x_x"]),
         }
         if folder:
-            functions = {key: self.compile(f, folder) for key, f in functions.items()}
+            functions = self.compile(functions, folder)
         out = functions["nlp"](x, p)
         options = {"print_time": False, "error_on_fail": False, "calc_lam_p": False, "no_nlp_grad": True,
                    "ipopt.print_level": 0, "ipopt.sb": "yes", "ipopt.tol": 1e-7, "ipopt.constr_viol_tol": 1e-8,
@@ -282,15 +282,17 @@ class Program:
         return ca.MX(sparsity, ca.vec(values))
 
     @staticmethod
-    def compile(function, folder):
+    def compile(functions, folder):
+        """The same functions from one C file, where what they share stands once."""
         folder.mkdir(parents=True, exist_ok=True)
-        name, source = function.name(), ca.CodeGenerator(function.name() + ".c")
-        source.add(function)
-        text, code, library = source.dump(), folder / f"{name}.c", folder / f"{name}.so"
+        source = ca.CodeGenerator("nlp.c")
+        for function in functions.values():
+            source.add(function)
+        text, code, library = source.dump(), folder / "nlp.c", folder / "nlp.so"
         if not library.exists() or code.read_text() != text:
             code.write_text(text)
             subprocess.run(["cc", "-O1", "-march=native", "-fPIC", "-shared", code, "-o", library, "-lm"], check=True)
-        return ca.external(name, str(library))
+        return {key: ca.external(function.name(), str(library)) for key, function in functions.items()}
 
     def start(self, motion):
         """Variables of a motion; β is interpolated, σ follows from it."""

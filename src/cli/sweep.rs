@@ -133,7 +133,8 @@ fn tell(lines: &[Line], criteria: &[Criterion], speeds: &[f64], comparisons: &[C
         let name = line.gait.description().key;
         match &line.maximum {
             Some(m) => {
-                let why = if m.ended_by.is_empty() { "no single constraint".into() } else { m.ended_by[0].clone() };
+                let weightiest = &m.ended_by[..m.ended_by.len().min(3)];
+                let why = if weightiest.is_empty() { "no single constraint".into() } else { weightiest.join(", ") };
                 writeln!(out, "{name} goes up to {:.3} m/s; what stops it: {why}", m.speed)?;
             }
             None => writeln!(out, "{name}: no greatest speed found")?,
