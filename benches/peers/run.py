@@ -4,8 +4,9 @@
 
 Needs cargo, a C compiler and Python 3; makes a virtual environment with casadi, numpy and scipy where they are missing.
 CasADi evaluates in its virtual machine and as compiled C; the ratio is to the faster of the two. Times are medians of
-one cold optimization each, from the same walk, on one thread, without building or compiling. Ours includes the receipt.
-Costs differ a little: 43 nodes there, constraints between the nodes and exact |power| here.
+one cold optimization each, from the same walk, without building or compiling (which takes a quarter of an hour for all of
+the C); processor time of one thread, so that other work on the machine does not matter (wall time where there is no /proc).
+Ours includes the receipt. Costs differ a little: 43 nodes there, constraints between the nodes and exact |power| here.
 """
 import argparse
 import json
@@ -49,9 +50,19 @@ class Ours:
                                         stdout=subprocess.PIPE)
 
     def ask(self, gait, criterion, speed):
+        """The answer, with its processor time in seconds."""
+        before = self.busy()
         print(gait, criterion, speed, file=self.process.stdin, flush=True)
         answer = json.loads(self.process.stdout.readline())
-        return answer if "error" not in answer else sys.exit(answer["error"])
+        if "error" in answer:
+            sys.exit(answer["error"])
+        return answer, answer["seconds"] if before is None else self.busy() - before
+
+    def busy(self):
+        try:
+            return 1e-9 * int(Path(f"/proc/{self.process.pid}/schedstat").read_text().split()[0])
+        except (OSError, IndexError, ValueError):
+            return None
 
 
 def main():
@@ -69,7 +80,7 @@ def main():
     folder = Path(arguments.keep or tempfile.mkdtemp(prefix="piaffe-peers-")).resolve()
     for gait in GAITS:
         for criterion in CRITERIA:
-            first = ours.ask(gait, criterion, arguments.speed)
+            first, _ = ours.ask(gait, criterion, arguments.speed)
             program = Program(Model(first["description"]), criterion == "energy", arguments.speed)
             print(f"building {gait} {criterion}: {program.size} variables, {len(program.lower)} rows", file=sys.stderr)
             solvers = {"vm": program.solver(None), "C": program.solver(folder / f"{gait}-{criterion}")}
@@ -78,18 +89,18 @@ def main():
     times, costs, failed = {}, {}, set()
     for _ in range(arguments.rounds):
         for gait, criterion, given, solvers in points:
-            answer = ours.ask(gait, criterion, arguments.speed)
-            times.setdefault((gait, criterion, "ours"), []).append(answer["seconds"])
+            answer, seconds = ours.ask(gait, criterion, arguments.speed)
+            times.setdefault((gait, criterion, "ours"), []).append(seconds)
             costs[gait, criterion, "ours"] = answer["cost"]
             for name, solver in solvers.items():
-                started = time.perf_counter()
+                started = time.process_time()
                 solution = solver(**given)
-                times.setdefault((gait, criterion, name), []).append(time.perf_counter() - started)
+                times.setdefault((gait, criterion, name), []).append(time.process_time() - started)
                 costs[gait, criterion, name] = float(solution["f"])
                 if not solver.stats()["success"]:
                     failed.add((gait, criterion, name))
 
-    print(f"one cold optimization at {arguments.speed} m/s, median of {arguments.rounds}, ms; × no optimum")
+    print(f"one cold optimization at {arguments.speed} m/s, median of {arguments.rounds}, ms of processor time; × no optimum")
     print(f"{'':<15} {'ours':>9} {'VM':>9} {'C':>9} {'ratio':>7} {'cost ours':>11} {'theirs':>11}")
     for gait, criterion, _, _ in points:
         ms = {name: 1e3 * statistics.median(times[gait, criterion, name]) for name in ("ours", "vm", "C")}
