@@ -1,4 +1,6 @@
 //! Many random starts: how the searches end, and in how many different optima.
+//!
+//! At 0.6 m/s, of 500 each: amble 492 optimal for either criterion, curvet 498 (energy), all others 500.
 
 use piaffe::gaits::GAITS;
 use piaffe::model::Gait;

@@ -4,8 +4,8 @@
 
 Needs cargo, a C compiler and Python 3; makes a virtual environment with casadi, numpy and scipy where they are missing.
 CasADi evaluates in its virtual machine and as compiled C; the ratio is to the faster of the two. Times are medians of
-one cold optimization each, from the same walk, without building or compiling (which takes a quarter of an hour for all of
-the C); processor time of one thread, so that other work on the machine does not matter (wall time where there is no /proc).
+one cold optimization each, from the same walk, without building or compiling (half an hour for all of the C, kept
+with --keep); processor time of one thread, so that other work on the machine does not matter (wall time where there is no /proc).
 Ours includes the receipt. Costs differ a little: 43 nodes there, constraints between the nodes and exact |power| here.
 """
 import argparse
