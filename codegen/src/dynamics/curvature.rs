@@ -37,10 +37,10 @@ fn virtual_power(model: &mut Model, leg: usize, n: &[Var], phi: &[Var]) -> Poly 
     }
     let mut power = Poly::zero();
     for (b, centre) in model.centres(Origin::Foot(leg)).iter().enumerate() {
-        let body = model.mechanism.bodies[b].clone();
+        let body = model.quantities.bodies[b].clone();
         let velocity = model.rate(centre);
         let mut acceleration = model.rate(&velocity);
-        acceleration[1] += &Poly::constant(model.mechanism.gravity);
+        acceleration[1] += &model.quantities.gravity;
         let spin = model.kinematics.bodies[b].spin.clone();
         let mut virtual_velocity = add(&with_rates(model, &velocity, &rename), &translation);
         let mut virtual_spin = with_rates(model, &spin, &rename);
@@ -52,13 +52,13 @@ fn virtual_power(model: &mut Model, leg: usize, n: &[Var], phi: &[Var]) -> Poly 
             virtual_velocity[1] += &(&turn * &centre[0]);
             virtual_spin[2] += &turn;
         }
-        power += &dot(&virtual_velocity, &acceleration).scaled(body.mass);
+        power += &(&dot(&virtual_velocity, &acceleration) * &body.mass);
         let angular = scaled(&spin, &body.inertia);
         let moment = add(&model.rate(&angular), &cross(&spin, &angular));
         power += &dot(&virtual_spin, &moment);
     }
-    for (k, joint) in model.mechanism.joints.iter().enumerate() {
-        power += &(&Poly::from(n[k]) * &Poly::from(model.coordinates.q[k][2])).scaled(joint.rotor_inertia);
+    for (k, inertia) in model.quantities.rotor_inertia.iter().enumerate() {
+        power += &(&(&Poly::from(n[k]) * &Poly::from(model.coordinates.q[k][2])) * inertia);
     }
     power
 }

@@ -88,16 +88,16 @@ pub fn kernels(model: &mut Model) -> Vec<Kernel> {
 fn energy(model: &mut Model) -> Kernel {
     let (mut kinetic, mut potential) = (Poly::zero(), Poly::zero());
     for (b, centre) in model.centres(Origin::World).iter().enumerate() {
-        let body = model.mechanism.bodies[b].clone();
+        let body = model.quantities.bodies[b].clone();
         let velocity = model.rate(centre);
         let spin = model.kinematics.bodies[b].spin.clone();
-        kinetic += &dot(&velocity, &velocity).scaled(0.5 * body.mass);
+        kinetic += &(&dot(&velocity, &velocity).scaled(0.5) * &body.mass);
         kinetic += &dot(&spin, &scaled(&spin, &body.inertia)).scaled(0.5);
-        potential += &centre[1].scaled(body.mass * model.mechanism.gravity);
+        potential += &(&(&centre[1] * &body.mass) * &model.quantities.gravity);
     }
-    for (joint, symbols) in model.mechanism.joints.iter().zip(&model.coordinates.q) {
+    for (inertia, symbols) in model.quantities.rotor_inertia.iter().zip(&model.coordinates.q) {
         let rate = Poly::from(symbols[1]);
-        kinetic += &(&rate * &rate).scaled(0.5 * joint.rotor_inertia);
+        kinetic += &(&(&rate * &rate).scaled(0.5) * inertia);
     }
     Kernel::new("energy", "Kinetic energy and potential energy (zero at y = 0), J.")
         .scalar("kinetic", kinetic, "T")
@@ -110,10 +110,10 @@ fn angular_momentum(model: &mut Model, leg: usize) -> Poly {
     let foot = add(&model.platform(), &model.foot(leg));
     let mut sigma = Poly::zero();
     for (b, centre) in model.centres(Origin::World).iter().enumerate() {
-        let body = model.mechanism.bodies[b].clone();
+        let body = model.quantities.bodies[b].clone();
         let arm = subtract(centre, &foot);
         let velocity = model.rate(centre);
-        sigma += &cross(&arm, &velocity)[axis].scaled(body.mass);
+        sigma += &(&cross(&arm, &velocity)[axis] * &body.mass);
         // Spin about the axis in world terms: the partial spin of a turn of the whole robot about it.
         sigma += &spin_momentum(model, b, axis);
     }
@@ -123,7 +123,7 @@ fn angular_momentum(model: &mut Model, leg: usize) -> Poly {
 /// Component along the world `axis` of the spin momentum of body `b`.
 fn spin_momentum(model: &Model, b: usize, axis: usize) -> Poly {
     let spin = &model.kinematics.bodies[b].spin;
-    let angular = scaled(spin, &model.mechanism.bodies[b].inertia);
+    let angular = scaled(spin, &model.quantities.bodies[b].inertia);
     // The axis in the body's axes is the partial spin of the platform's rotation about it. In a
     // level gait all bodies turn about it.
     match model.coordinates.q.get(model.mechanism.joints.len()) {

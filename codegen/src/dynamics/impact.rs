@@ -22,17 +22,17 @@ fn momenta_before(model: &mut Model, landing: usize, platform_velocity: &Vec3) -
             *v += p;
         }
         let spin = model.kinematics.bodies[b].spin.clone();
-        let body = model.mechanism.bodies[b].clone();
+        let body = model.quantities.bodies[b].clone();
         let angular = scaled(&spin, &body.inertia);
         for (sum, [x, xd, _]) in momenta.iter_mut().zip(&q) {
             for i in 0..3 {
-                *sum += &(&model.ring.derivative(&centre[i], *x) * &velocity[i]).scaled(body.mass);
+                *sum += &(&(&model.ring.derivative(&centre[i], *x) * &velocity[i]) * &body.mass);
                 *sum += &(&model.ring.derivative(&spin[i], *xd) * &angular[i]);
             }
         }
     }
-    for (k, joint) in model.mechanism.joints.iter().enumerate() {
-        momenta[k] += &Poly::from(q[k][1]).scaled(joint.rotor_inertia);
+    for (k, inertia) in model.quantities.rotor_inertia.iter().enumerate() {
+        momenta[k] += &(&Poly::from(q[k][1]) * inertia);
     }
     momenta
 }
@@ -53,21 +53,21 @@ fn inertia_about(model: &mut Model, leg: usize) -> Vec<Vec<Poly>> {
     model.jacobian(&momenta, &rates)
 }
 
-/// Impulse on the feet in all: total mass times the change of the mass centre's velocity.
+/// Impulse on the feet in all: the change of linear momentum.
 fn impulse(model: &mut Model, landing: usize, before: &Vec3, after: &BTreeMap<Var, Poly>) -> Vec<Poly> {
-    let com = model.centre_of_mass(Origin::Foot(landing));
-    let rate = model.rate(&com);
-    let mass = model.mechanism.total_mass();
+    let moment = model.first_moment(Origin::Foot(landing));
+    let rate = model.rate(&moment);
     let after: Vec<Poly> = model.components(&rate).iter().map(|v| model.ring.substitute(v, after)).collect();
-    after.iter().zip(before).map(|(a, b)| (a - b).scaled(mass)).collect()
+    after.iter().zip(before).map(|(a, b)| a - b).collect()
 }
 
-/// Velocity of the mass centre when the platform moves at `platform`.
-fn com_velocity(model: &mut Model, platform: &Vec3) -> Vec3 {
-    let com = model.centre_of_mass(Origin::World);
-    let relative = subtract(&com, &model.platform());
+/// Linear momentum of the robot when the platform moves at `platform`.
+fn linear_momentum(model: &mut Model, platform: &Vec3) -> Vec3 {
+    let mass = model.quantities.total_mass();
+    let shift = model.platform().map(|x| &x * &mass);
+    let relative = subtract(&model.first_moment(Origin::World), &shift);
     let rate = model.rate(&relative);
-    [0, 1, 2].map(|i| &rate[i] + &platform[i])
+    [0, 1, 2].map(|i| &rate[i] + &(&platform[i] * &mass))
 }
 
 fn with_platform(model: &mut Model, landing: usize, solution: &[Poly]) -> (BTreeMap<Var, Poly>, Vec<Poly>) {
@@ -87,7 +87,7 @@ pub fn kernels(model: &mut Model, leg: usize) -> Vec<Kernel> {
     let factors = Factors::new(&mut model.ring, &inertia);
     let solution = factors.solve(&mut model.ring, &momenta);
     let (map, xd) = with_platform(model, leg, &solution);
-    let before = com_velocity(model, &platform);
+    let before = linear_momentum(model, &platform);
     let impulse = impulse(model, leg, &before, &map);
     let general = Kernel::new(
         format!("impact{}", leg + 1),
@@ -129,8 +129,8 @@ impl Touchdown {
         let momenta = model.momenta(Origin::Foot(leg), &coordinates);
         let after: Vec<Poly> = momenta.iter().map(|m| model.ring.substitute(m, &rename)).collect();
         let residual = before.iter().zip(&after).map(|(b, a)| b - a).collect();
-        let com_before = com_velocity(model, &platform);
-        let mut outputs = impulse(model, leg, &com_before, &rename);
+        let momentum_before = linear_momentum(model, &platform);
+        let mut outputs = impulse(model, leg, &momentum_before, &rename);
         let leaving = subtract(&model.foot(stance), &model.foot(leg));
         let leaving_rate = model.rate(&leaving);
         outputs.push(model.ring.substitute(&leaving_rate[1], &rename));
@@ -227,7 +227,7 @@ pub fn both_feet(model: &mut Model) -> Kernel {
         })
         .collect();
     let (map, xd) = with_platform(model, landing, &solution);
-    let before = com_velocity(model, &platform);
+    let before = linear_momentum(model, &platform);
     let total = impulse(model, landing, &before, &map);
     let impulse_landing = total.iter().zip(&impulse_other).map(|(t, o)| t - o).collect();
     let scale = (0..schur.len()).map(|k| schur[k][k].clone()).collect();

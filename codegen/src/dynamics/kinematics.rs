@@ -3,8 +3,9 @@
 //! A frame is a base rotation followed by one turn about one axis. Joints about the same axis add
 //! up to one absolute angle, so a planar chain has one sine and cosine per link and no products.
 
+use super::quantities::Quantities;
 use crate::expr::{Poly, Ring, Var};
-use crate::mechanism::{Body, Mechanism};
+use crate::mechanism::Mechanism;
 use crate::spec::{Axis, Rotation};
 
 pub type Vec3 = [Poly; 3];
@@ -58,7 +59,12 @@ impl Coordinates {
 }
 
 impl Kinematics {
-    pub fn new(ring: &mut Ring, mechanism: &Mechanism, coordinates: &Coordinates) -> Kinematics {
+    pub fn new(
+        ring: &mut Ring,
+        mechanism: &Mechanism,
+        quantities: &Quantities,
+        coordinates: &Coordinates,
+    ) -> Kinematics {
         let theta = coordinates.q.get(mechanism.joints.len()).map(|c| c[0]);
         let mut platform = Frame { base: identity(), base_spin: zero(), axis: Axis::Pitch, turn: Vec::new() };
         match mechanism.rotation {
@@ -71,29 +77,28 @@ impl Kinematics {
         }
         let mut frames: Vec<(Frame, Vec3)> = Vec::new();
         let mut bodies = Vec::new();
-        for body in &mechanism.bodies {
+        for (body, numbers) in mechanism.bodies.iter().zip(&quantities.bodies) {
             let (frame, joint) = match (body.parent, body.coordinate) {
                 (Some(parent), Some(coordinate)) => {
                     let (above, origin) = frames[parent].clone();
-                    let joint = add(&origin, &rotate(&above.rotation(ring), &body.offset));
+                    let joint = add(&origin, &rotate(&above.rotation(ring), &numbers.offset));
                     (above.turned(ring, body.axis, coordinates.q[coordinate][0]), joint)
                 }
                 _ => (platform.clone(), zero()),
             };
-            bodies.push(place(ring, body, &frame, &joint));
+            bodies.push(place(ring, &numbers.com, &frame, &joint));
             frames.push((frame, joint));
         }
         let feet = [0, 1].map(|k| {
-            let leg = &mechanism.legs[k];
-            let (frame, joint) = &frames[leg.foot_body];
-            add(joint, &rotate(&frame.rotation(ring), &leg.foot))
+            let (frame, joint) = &frames[mechanism.legs[k].foot_body];
+            add(joint, &rotate(&frame.rotation(ring), &quantities.feet[k]))
         });
         Kinematics { bodies, feet }
     }
 }
 
-fn place(ring: &mut Ring, body: &Body, frame: &Frame, joint: &Vec3) -> Placement {
-    Placement { com: add(joint, &rotate(&frame.rotation(ring), &body.com)), spin: frame.spin(ring) }
+fn place(ring: &mut Ring, com: &Vec3, frame: &Frame, joint: &Vec3) -> Placement {
+    Placement { com: add(joint, &rotate(&frame.rotation(ring), com)), spin: frame.spin(ring) }
 }
 
 impl Frame {
@@ -160,11 +165,11 @@ fn product(a: &Mat3, b: &Mat3) -> Mat3 {
     })
 }
 
-fn rotate(m: &Mat3, v: &[f64; 3]) -> Vec3 {
+fn rotate(m: &Mat3, v: &Vec3) -> Vec3 {
     [0, 1, 2].map(|i| {
         let mut sum = Poly::zero();
         for k in 0..3 {
-            sum += &m[i][k].scaled(v[k]);
+            sum += &(&m[i][k] * &v[k]);
         }
         sum
     })

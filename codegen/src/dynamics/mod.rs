@@ -10,12 +10,14 @@ mod impact;
 mod kernel;
 mod kinematics;
 mod model;
+mod quantities;
 mod solve;
 mod staging;
 mod stance;
 
 pub use kernel::{Input, Kernel, Output, Shape};
 pub use model::Model;
+pub use quantities::{BodyQuantities, Quantities};
 
 use crate::mechanism::Mechanism;
 

@@ -1,14 +1,15 @@
 //! A mechanism with its symbols and kinematics: what all kernels are derived from.
 
-use super::kinematics::{Coordinates, Kinematics, Vec3, add, cross, dot, subtract};
+use super::kinematics::{Coordinates, Kinematics, Vec3, add, cross, dot, subtract, zero};
+use super::quantities::Quantities;
 use crate::expr::{Poly, Ring, Var};
 use crate::mechanism::Mechanism;
-use crate::spec::Inertia;
 use std::collections::BTreeMap;
 
 /// Symbols, kinematics and mechanism of one gait.
 pub struct Model {
     pub mechanism: Mechanism,
+    pub quantities: Quantities,
     pub ring: Ring,
     pub coordinates: Coordinates,
     pub kinematics: Kinematics,
@@ -27,8 +28,9 @@ impl Model {
     pub fn new(mechanism: &Mechanism) -> Model {
         let mut ring = Ring::new();
         let coordinates = Coordinates::new(&mut ring, mechanism);
-        let kinematics = Kinematics::new(&mut ring, mechanism, &coordinates);
-        Model { mechanism: mechanism.clone(), ring, coordinates, kinematics }
+        let quantities = Quantities::constant(mechanism);
+        let kinematics = Kinematics::new(&mut ring, mechanism, &quantities, &coordinates);
+        Model { mechanism: mechanism.clone(), quantities, ring, coordinates, kinematics }
     }
 
     /// p as a vector (z = 0 where the platform does not move sideways).
@@ -54,16 +56,22 @@ impl Model {
         self.kinematics.bodies.iter().map(|b| planar(self, subtract(&b.com, &shift))).collect()
     }
 
-    /// Mass centre of the whole robot from `origin`.
-    pub fn centre_of_mass(&self, origin: Origin) -> Vec3 {
-        let mut com = [Poly::zero(), Poly::zero(), Poly::zero()];
-        let total = self.mechanism.total_mass();
-        for (body, centre) in self.mechanism.bodies.iter().zip(self.centres(origin)) {
-            for (sum, c) in com.iter_mut().zip(&centre) {
-                *sum += &c.scaled(body.mass / total);
+    /// First moment of mass about `origin`: total mass times the mass centre of the whole robot.
+    pub fn first_moment(&self, origin: Origin) -> Vec3 {
+        let mut moment = zero();
+        for (body, centre) in self.quantities.bodies.iter().zip(self.centres(origin)) {
+            for (sum, c) in moment.iter_mut().zip(&centre) {
+                *sum += &(c * &body.mass);
             }
         }
-        com
+        moment
+    }
+
+    /// Mass centre of the whole robot from `origin`.
+    pub fn centre_of_mass(&mut self, origin: Origin) -> Vec3 {
+        let total = self.quantities.total_mass();
+        let over_total = self.ring.reciprocal(total);
+        self.first_moment(origin).map(|m| &m * &over_total)
     }
 
     pub fn rate(&mut self, v: &Vec3) -> Vec3 {
@@ -77,7 +85,7 @@ impl Model {
         for (b, centre) in centres.iter().enumerate() {
             let velocity = self.rate(centre);
             let spin = self.kinematics.bodies[b].spin.clone();
-            let angular = scaled(&spin, &self.mechanism.bodies[b].inertia);
+            let angular = scaled(&spin, &self.quantities.bodies[b].inertia);
             self.project(coordinates, b, centre, &velocity, &angular, &mut momenta);
         }
         self.add_rotors(coordinates, 1, &mut momenta);
@@ -91,10 +99,9 @@ impl Model {
         for (b, centre) in centres.iter().enumerate() {
             let velocity = self.rate(centre);
             let mut acceleration = self.rate(&velocity);
-            acceleration[1] += &Poly::constant(self.mechanism.gravity);
+            acceleration[1] += &self.quantities.gravity;
             let spin = self.kinematics.bodies[b].spin.clone();
-            let inertia = self.mechanism.bodies[b].inertia;
-            let angular = scaled(&spin, &inertia);
+            let angular = scaled(&spin, &self.quantities.bodies[b].inertia);
             let moment = add(&self.rate(&angular), &cross(&spin, &angular));
             self.project(coordinates, b, centre, &acceleration, &moment, &mut forces);
         }
@@ -110,12 +117,12 @@ impl Model {
         for (b, centre) in self.centres(origin).iter().enumerate() {
             let velocity = self.rate(centre);
             let mut acceleration = self.rate(&velocity);
-            acceleration[1] += &Poly::constant(self.mechanism.gravity);
-            let (mass, inertia) = (self.mechanism.bodies[b].mass, self.mechanism.bodies[b].inertia[2][2]);
-            let spin = self.kinematics.bodies[b].spin[2].scaled(inertia);
-            sigma += &cross(centre, &velocity)[2].scaled(mass);
+            acceleration[1] += &self.quantities.gravity;
+            let body = &self.quantities.bodies[b];
+            let spin = &self.kinematics.bodies[b].spin[2] * &body.inertia[2][2];
+            sigma += &(&cross(centre, &velocity)[2] * &body.mass);
             sigma += &spin;
-            balance += &cross(centre, &acceleration)[2].scaled(mass);
+            balance += &(&cross(centre, &acceleration)[2] * &body.mass);
             balance += &self.ring.time_derivative(&spin);
         }
         (sigma, balance)
@@ -131,11 +138,11 @@ impl Model {
         angular: &Vec3,
         sums: &mut [Poly],
     ) {
-        let mass = self.mechanism.bodies[b].mass;
+        let mass = &self.quantities.bodies[b].mass;
         let spin = &self.kinematics.bodies[b].spin;
         for (sum, [x, xd, _]) in sums.iter_mut().zip(coordinates) {
             let partial_velocity = [0, 1, 2].map(|i| self.ring.derivative(&centre[i], *x));
-            *sum += &dot(&partial_velocity, linear).scaled(mass);
+            *sum += &(&dot(&partial_velocity, linear) * mass);
             let partial_spin = [0, 1, 2].map(|i| self.ring.derivative(&spin[i], *xd));
             *sum += &dot(&partial_spin, angular);
         }
@@ -143,9 +150,9 @@ impl Model {
 
     /// Rotors turn with their joints: `J n² q̇` (order 1) or `J n² q̈` (order 2).
     fn add_rotors(&self, coordinates: &[[Var; 3]], order: usize, sums: &mut [Poly]) {
-        for (joint, symbols) in self.mechanism.joints.iter().zip(&self.coordinates.q) {
+        for (inertia, symbols) in self.quantities.rotor_inertia.iter().zip(&self.coordinates.q) {
             if let Some(k) = coordinates.iter().position(|c| c[0] == symbols[0]) {
-                sums[k] += &Poly::from(symbols[order]).scaled(joint.rotor_inertia);
+                sums[k] += &(&Poly::from(symbols[order]) * inertia);
             }
         }
     }
@@ -193,14 +200,8 @@ impl Model {
 }
 
 /// Inertia times a vector in the body's axes.
-pub fn scaled(v: &Vec3, inertia: &Inertia) -> Vec3 {
-    [0, 1, 2].map(|i| {
-        let mut sum = v[i].scaled(inertia[i][i]);
-        for j in (0..3).filter(|j| *j != i && inertia[i][*j] != 0.0) {
-            sum += &v[j].scaled(inertia[i][j]);
-        }
-        sum
-    })
+pub fn scaled(v: &Vec3, inertia: &[Vec3; 3]) -> Vec3 {
+    [0, 1, 2].map(|i| dot(v, &inertia[i]))
 }
 
 /// In a planar gait all bodies move in the sagittal plane: z does not matter.

@@ -54,11 +54,12 @@ impl Stance {
         let gravity_moment = -&model.without(&balance, &still);
         let com = model.centre_of_mass(origin);
         let c = if model.mechanism.rotation == Rotation::Roll { com[2].clone() } else { com[0].clone() };
-        let velocity = model.rate(&com);
-        let mut acceleration = model.rate(&velocity);
-        acceleration[1] += &Poly::constant(model.mechanism.gravity);
-        let mass = model.mechanism.total_mass();
-        let reaction = model.components(&acceleration).iter().map(|a| a.scaled(mass)).collect();
+        // Change of linear momentum, less the weight.
+        let moment = model.first_moment(origin);
+        let momentum = model.rate(&moment);
+        let mut force = model.rate(&momentum);
+        force[1] += &(&model.quantities.total_mass() * &model.quantities.gravity);
+        let reaction = model.components(&force);
         Stance { forces, inertia, bias, reaction, sigma, f1, f2, gravity_moment, c, balance }
     }
 }

@@ -207,6 +207,9 @@ impl Neg for &Poly {
 impl Mul for &Poly {
     type Output = Poly;
     fn mul(self, rhs: &Poly) -> Poly {
+        if let Some(factor) = rhs.as_constant() {
+            return self.scaled(factor);
+        }
         let mut product = Poly::zero();
         for (m, c) in self.terms() {
             for (n, d) in rhs.terms() {

@@ -141,6 +141,24 @@ impl Mechanism {
         self.bodies.iter().map(|b| b.mass).sum()
     }
 
+    /// Everything that is measured, in one fixed order: gravity; of each body offset, mass, mass centre and
+    /// inertia; of each joint the rotor's inertia; of each leg the foot and its members' mounts.
+    pub fn numbers(&self) -> Vec<f64> {
+        let mut numbers = vec![self.gravity];
+        for body in &self.bodies {
+            numbers.extend(body.offset);
+            numbers.push(body.mass);
+            numbers.extend(body.com);
+            numbers.extend(body.inertia.as_flattened());
+        }
+        numbers.extend(self.joints.iter().map(|joint| joint.rotor_inertia));
+        for leg in &self.legs {
+            numbers.extend(leg.foot);
+            numbers.extend(leg.members.iter().flat_map(|member| member.mount));
+        }
+        numbers
+    }
+
     /// Number of position coordinates p (and of reaction components).
     pub fn positions(&self) -> usize {
         if self.lateral { 3 } else { 2 }

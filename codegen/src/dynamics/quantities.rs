@@ -1,0 +1,59 @@
+//! The mechanism's numbers as expressions: constants, or sums of parameters of the real robot.
+
+use crate::expr::Poly;
+use crate::mechanism::Mechanism;
+
+/// What of a mechanism is measured, in the order of [`Mechanism::numbers`]; SI units.
+#[derive(Clone, Debug)]
+pub struct Quantities {
+    pub gravity: Poly,
+    pub bodies: Vec<BodyQuantities>,
+    /// Of each joint, seen at the joint.
+    pub rotor_inertia: Vec<Poly>,
+    /// Foot of each leg in the axes of its last body.
+    pub feet: [[Poly; 3]; 2],
+}
+
+/// See `mechanism::Body`.
+#[derive(Clone, Debug)]
+pub struct BodyQuantities {
+    pub offset: [Poly; 3],
+    pub mass: Poly,
+    pub com: [Poly; 3],
+    pub inertia: [[Poly; 3]; 3],
+}
+
+impl Quantities {
+    pub fn constant(mechanism: &Mechanism) -> Quantities {
+        Quantities::new(mechanism, mechanism.numbers().into_iter().map(Poly::constant))
+    }
+
+    /// From expressions for all of the mechanism's numbers.
+    pub fn new(mechanism: &Mechanism, numbers: impl IntoIterator<Item = Poly>) -> Quantities {
+        let mut numbers = numbers.into_iter();
+        let mut one = || numbers.next().unwrap_or_default();
+        let gravity = one();
+        let mut bodies = Vec::new();
+        for _ in &mechanism.bodies {
+            let offset = [(); 3].map(|()| one());
+            let mass = one();
+            bodies.push(BodyQuantities {
+                offset,
+                mass,
+                com: [(); 3].map(|()| one()),
+                inertia: [(); 3].map(|()| [(); 3].map(|()| one())),
+            });
+        }
+        let rotor_inertia = mechanism.joints.iter().map(|_| one()).collect();
+        let feet = mechanism.legs.each_ref().map(|leg| {
+            let foot = [(); 3].map(|()| one());
+            leg.members.iter().for_each(|_| drop([(); 3].map(|()| one())));
+            foot
+        });
+        Quantities { gravity, bodies, rotor_inertia, feet }
+    }
+
+    pub fn total_mass(&self) -> Poly {
+        self.bodies.iter().fold(Poly::zero(), |sum, body| &sum + &body.mass)
+    }
+}
