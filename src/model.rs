@@ -5,6 +5,8 @@
 //! kernel as a function over arrays, with its documentation and operation counts. Coordinates,
 //! frames and units: X = [p, q], world axes Xf forward, Yf up, Zf to the right; SI.
 
+pub mod family;
+
 use std::borrow::Cow;
 
 /// What a gait is made of, in numbers.
@@ -88,7 +90,7 @@ pub struct Joint {
 pub struct Leg {
     /// The real legs that it stands for, all of one build: of masses, inertias, torques and reactions each has an
     /// equal share.
-    pub members: &'static [Member],
+    pub members: Cow<'static, [Member]>,
     pub first_joint: usize,
     pub end_joint: usize,
     pub foot_body: usize,

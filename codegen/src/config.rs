@@ -1,8 +1,8 @@
 //! The cargo façade: the one place that reads the environment, writes files and prints.
 
 use crate::emit;
-use crate::mechanism::Mechanism;
-use crate::spec::{self, Diagnostic};
+use crate::mechanism::{Family, Mechanism, select};
+use crate::spec::{self, Diagnostic, Gait, Robot};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
@@ -20,6 +20,7 @@ use std::{env, fs, io};
 #[derive(Clone, Debug)]
 pub struct Config {
     folder: PathBuf,
+    parameters: Vec<String>,
     runtime: Option<String>,
 }
 
@@ -45,7 +46,17 @@ pub type Generated = (String, String);
 impl Config {
     /// The folder's path is relative to the package's root.
     pub fn new(folder: impl Into<PathBuf>) -> Config {
-        Config { folder: folder.into(), runtime: Some("::piaffe::model".into()) }
+        Config { folder: folder.into(), parameters: Vec::new(), runtime: Some("::piaffe::model".into()) }
+    }
+
+    /// Keeps numbers of the robots symbolic: those under a table of the specification, such as `links` or
+    /// `links.thigh`, or single ones, such as `links.thigh.mass` and `gravity`. What is generated are then
+    /// the families of all robots that differ in them, and `families.rs` instead of `gaits.rs`.
+    ///
+    /// Without parameters all numbers are folded into the code, which is faster.
+    pub fn parameter(mut self, name: &str) -> Config {
+        self.parameters.push(name.into());
+        self
     }
 
     /// Path of the module that has the `Gait` trait, as seen from the generated code.
@@ -60,7 +71,7 @@ impl Config {
         self
     }
 
-    /// Generates into `OUT_DIR`: `gaits.rs`, to be included, and one file per gait.
+    /// Generates into `OUT_DIR`: `gaits.rs` or `families.rs`, to be included, and one file per gait.
     ///
     /// Mistakes in the specification are reported through cargo, so that they are the last thing a
     /// person sees; nothing is written then.
@@ -80,7 +91,12 @@ impl Config {
         println!("cargo::rerun-if-changed={}", self.folder.display());
         let started = std::time::Instant::now();
         let robots = robots(&root, &self.folder)?;
-        for (name, source) in generate(&robots, self.runtime.as_deref())? {
+        let files = match (&self.parameters[..], self.runtime.as_deref()) {
+            ([], runtime) => generate(&robots, runtime)?,
+            (parameters, Some(runtime)) => generate_families(&robots, parameters, runtime)?,
+            (_, None) => return Err("a family of robots is no use without its runtime: drop functions_only()".into()),
+        };
+        for (name, source) in files {
             write_if_changed(&out.join(&name), &source).map_err(|e| format!("cannot write {name}: {e}"))?;
         }
         let gaits: usize = robots.iter().map(|r| r.gaits.len()).sum();
@@ -140,9 +156,49 @@ fn entries(root: &Path, folder: &Path) -> Result<Vec<PathBuf>, String> {
 /// # Errors
 /// The rendered diagnostics, if the specification has mistakes.
 pub fn generate(robots: &[RobotFiles], runtime: Option<&str>) -> Result<Vec<Generated>, String> {
+    let parsed = parse(robots)?;
+    let mut files = for_each_gait(&parsed, |robot, gait, origin| {
+        let locked = robot.spec.locked(&gait.locked).map_err(|t| format!("`{}` is tilted", t.joint))?;
+        let source = emit::gait_source(&Mechanism::new(&locked, gait), &robot.files.module, runtime, origin)?;
+        Ok((emit::file_name(&robot.files.module, &gait.name), source))
+    })?;
+    files.push(("gaits.rs".into(), emit::registry_source(&modules(&parsed), runtime, &origin_of_all(robots))));
+    Ok(files)
+}
+
+/// The same for the families of robots that differ in `parameters` (see [`Config::parameter`]).
+///
+/// # Errors
+/// The rendered diagnostics, if the specification has mistakes; what is wrong with the parameters else.
+pub fn generate_families(
+    robots: &[RobotFiles],
+    parameters: &[String],
+    runtime: &str,
+) -> Result<Vec<Generated>, String> {
+    let parsed = parse(robots)?;
+    let select =
+        |robot: &Parsed| select(&robot.spec, parameters).map_err(|e| format!("{}: {e}", robot.files.robot.path));
+    let chosen = parsed.iter().map(select).collect::<Result<Vec<_>, _>>()?;
+    let mut files = for_each_gait(&parsed, |robot, gait, origin| {
+        let family = Family::new(&robot.spec, gait, select(robot)?)?;
+        let source = emit::family_source(&family, &robot.files.module, runtime, origin)?;
+        Ok((emit::family_file_name(&robot.files.module, &gait.name), source))
+    })?;
+    let registry = emit::families_source(&modules(&parsed), &chosen, runtime, &origin_of_all(robots));
+    files.push(("families.rs".into(), registry));
+    Ok(files)
+}
+
+/// A robot with its gaits and the headers of their generated files.
+struct Parsed<'f> {
+    files: &'f RobotFiles,
+    spec: Robot,
+    gaits: Vec<(Gait, String)>,
+}
+
+fn parse(robots: &[RobotFiles]) -> Result<Vec<Parsed<'_>>, String> {
     let mut mistakes = Vec::new();
-    let mut modules = Vec::new();
-    let mut jobs = Vec::new();
+    let mut parsed = Vec::new();
     for files in robots {
         let robot = match spec::parse_robot(&files.robot.path, &files.robot.text) {
             Ok(robot) => robot,
@@ -151,40 +207,45 @@ pub fn generate(robots: &[RobotFiles], runtime: Option<&str>) -> Result<Vec<Gene
                 continue;
             }
         };
-        let mut names = Vec::new();
+        let mut gaits = Vec::new();
         for file in &files.gaits {
             match spec::parse_gait(&file.path, &file.text, &robot) {
-                Ok(gait) => {
-                    names.push(gait.name.clone());
-                    let robot = robot.robot.locked(&gait.locked).map_err(|t| format!("`{}` is tilted", t.joint))?;
-                    jobs.push((&files.module, Mechanism::new(&robot, &gait), origin(&[&files.robot, file])));
-                }
+                Ok(gait) => gaits.push((gait, origin(&[&files.robot, file]))),
                 Err(e) => mistakes.extend(e),
             }
         }
-        modules.push((files.module.as_str(), names));
+        parsed.push(Parsed { files, spec: robot.robot, gaits });
     }
     if !mistakes.is_empty() {
         return Err(render(&mistakes));
     }
-    emit::check_modules(&modules)?;
-    // Gaits do not know of each other: one thread each, joined in order.
-    let mut files = std::thread::scope(|scope| {
-        let running: Vec<_> = jobs
-            .iter()
-            .map(|(module, mechanism, origin)| {
-                scope.spawn(move || {
-                    let source = emit::gait_source(mechanism, module, runtime, origin)?;
-                    Ok((emit::file_name(module, &mechanism.gait), source))
-                })
-            })
-            .collect();
+    emit::check_modules(&modules(&parsed))?;
+    Ok(parsed)
+}
+
+/// A file for each gait. Gaits do not know of each other: one thread each, joined in order.
+fn for_each_gait(
+    robots: &[Parsed],
+    file: impl Fn(&Parsed, &Gait, &str) -> Result<Generated, String> + Sync,
+) -> Result<Vec<Generated>, String> {
+    let file = &file;
+    std::thread::scope(|scope| {
+        let jobs = robots.iter().flat_map(|robot| robot.gaits.iter().map(move |(gait, origin)| (robot, gait, origin)));
+        let running: Vec<_> =
+            jobs.map(|(robot, gait, origin)| scope.spawn(move || file(robot, gait, origin))).collect();
         let stopped = |_| Err("the generator stopped: a defect of piaffe-codegen".to_string());
-        running.into_iter().map(|thread| thread.join().unwrap_or_else(stopped)).collect::<Result<Vec<_>, String>>()
-    })?;
-    let all: Vec<&SpecFile> = robots.iter().flat_map(|r| std::iter::once(&r.robot).chain(&r.gaits)).collect();
-    files.push(("gaits.rs".into(), emit::registry_source(&modules, runtime, &origin(&all))));
-    Ok(files)
+        running.into_iter().map(|thread| thread.join().unwrap_or_else(stopped)).collect()
+    })
+}
+
+/// Names of the robots' modules and of their gaits.
+fn modules<'p>(robots: &'p [Parsed]) -> Vec<(&'p str, Vec<String>)> {
+    let names = |robot: &Parsed| robot.gaits.iter().map(|(gait, _)| gait.name.clone()).collect();
+    robots.iter().map(|robot| (robot.files.module.as_str(), names(robot))).collect()
+}
+
+fn origin_of_all(robots: &[RobotFiles]) -> String {
+    origin(&robots.iter().flat_map(|r| std::iter::once(&r.robot).chain(&r.gaits)).collect::<Vec<_>>())
 }
 
 fn render(diagnostics: &[Diagnostic]) -> String {

@@ -16,4 +16,4 @@ pub mod mechanism;
 pub mod program;
 pub mod spec;
 
-pub use config::{Config, Generated, RobotFiles, SpecFile, generate};
+pub use config::{Config, Generated, RobotFiles, SpecFile, generate, generate_families};

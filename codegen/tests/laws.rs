@@ -4,12 +4,13 @@
 mod common;
 
 use common::{Derived, GAITS, files, shipped};
+use piaffe_codegen::dynamics::Input;
 use piaffe_codegen::program::Program;
-use piaffe_codegen::{Generated, RobotFiles, SpecFile, generate};
+use piaffe_codegen::{Generated, RobotFiles, SpecFile, generate, generate_families};
 use std::fmt::Write;
 use syn::visit::{self, Visit};
 
-/// Shipped gaits generated with the specification found under `prefix`.
+/// Shipped gaits, of their robots and of their families, generated with the specification found under `prefix`.
 fn generated(prefix: &str) -> Vec<Generated> {
     let under = |file: SpecFile| SpecFile { path: format!("{prefix}{}", file.path), ..file };
     let mut robots: Vec<RobotFiles> = Vec::new();
@@ -22,7 +23,10 @@ fn generated(prefix: &str) -> Vec<Generated> {
             }
         }
     }
-    generate(&robots, Some("crate::model")).unwrap()
+    let all = ["gravity", "links", "legs", "actuators"].map(String::from);
+    let mut files = generate(&robots, Some("crate::model")).unwrap();
+    files.extend(generate_families(&robots, &all, "crate::model").unwrap());
+    files
 }
 
 #[test]
@@ -110,7 +114,7 @@ impl<'ast> Visit<'ast> for Law {
 #[test]
 fn kernels_are_straight_lines() {
     for (name, source) in generated("model-spec/") {
-        if name == "gaits.rs" {
+        if name == "gaits.rs" || name == "families.rs" {
             continue;
         }
         let mut law = Law::default();
@@ -153,8 +157,9 @@ fn sine_and_cosine_do_not_branch() {
 /// Factoring does not change values: the program as it is emitted against the expressions as derived.
 #[test]
 fn programs_compute_what_was_derived() {
-    for gait in GAITS {
-        let d = Derived::new(&shipped(gait));
+    let robot = GAITS.map(|gait| (gait, Derived::new(&shipped(gait))));
+    let family = GAITS.map(|gait| (gait, Derived::of_family(gait)));
+    for (gait, d) in robot.into_iter().chain(family) {
         let mut number = 0u32;
         let mut next = || {
             number += 1;
@@ -163,8 +168,9 @@ fn programs_compute_what_was_derived() {
         let mut worst = 0.0f64;
         for kernel in &d.kernels {
             let program = Program::new(&d.model.ring, kernel);
+            let mut draw = |i: &Input| i.symbols.iter().map(|_| next()).collect();
             let inputs: Vec<Vec<f64>> =
-                kernel.inputs.iter().map(|i| i.symbols.iter().map(|_| next()).collect()).collect();
+                kernel.inputs.iter().map(|i| d.of_robot(i.name).unwrap_or_else(|| draw(i))).collect();
             let arrays: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
             let direct = d.run(&kernel.name, &arrays);
             for (output, found) in kernel.outputs.iter().zip(program.evaluate(&inputs)) {

@@ -63,20 +63,39 @@ fn virtual_power(model: &mut Model, leg: usize, n: &[Var], phi: &[Var]) -> Poly 
     power
 }
 
+/// All outputs of an instant, each with its weight.
+pub struct Instant {
+    /// Weights of the torques of the joints, then of the balance.
+    pub n: Vec<Var>,
+    /// Weights of the reaction.
+    pub phi: Vec<Var>,
+    /// Weights of σ, σ̇, the swing foot's height, the platform's x, the swing foot's vertical velocity and the
+    /// platform's height.
+    pub others: Vec<Var>,
+    pub sum: Poly,
+}
+
+impl Instant {
+    pub fn new(model: &mut Model, leg: usize) -> Instant {
+        let n = symbols(model, "n", model.mechanism.joints.len() + 1);
+        let phi = symbols(model, "phi", model.mechanism.positions());
+        let others = symbols(model, "w", 6);
+        let stance = Stance::new(model, leg);
+        let mut sum = virtual_power(model, leg, &n, &phi);
+        let swing = subtract(&model.foot(1 - leg), &model.foot(leg));
+        let swing_rate = model.rate(&swing);
+        let platform = model.foot(leg).map(|x| -&x);
+        let terms = [&stance.sigma, &stance.gravity_moment, &swing[1], &platform[0], &swing_rate[1], &platform[1]];
+        for (weight, term) in others.iter().zip(terms) {
+            sum += &(&Poly::from(*weight) * term);
+        }
+        Instant { n, phi, others, sum }
+    }
+}
+
 fn instant(model: &mut Model, leg: usize) -> Kernel {
     let (q, qd, qdd) = (model.q(0), model.q(1), model.q(2));
-    let n = symbols(model, "n", model.mechanism.joints.len() + 1);
-    let phi = symbols(model, "phi", model.mechanism.positions());
-    let others = symbols(model, "w", 6);
-    let stance = Stance::new(model, leg);
-    let mut sum = virtual_power(model, leg, &n, &phi);
-    let swing = subtract(&model.foot(1 - leg), &model.foot(leg));
-    let swing_rate = model.rate(&swing);
-    let platform = model.foot(leg).map(|x| -&x);
-    let terms = [&stance.sigma, &stance.gravity_moment, &swing[1], &platform[0], &swing_rate[1], &platform[1]];
-    for (weight, term) in others.iter().zip(terms) {
-        sum += &(&Poly::from(*weight) * term);
-    }
+    let Instant { n, phi, others, sum } = Instant::new(model, leg);
     let gradient: Vec<Poly> = q.iter().chain(&qd).chain(&qdd).map(|s| model.ring.derivative(&sum, *s)).collect();
     let (by_q, rest) = gradient.split_at(q.len());
     let by_qd = &rest[..q.len()];
@@ -101,42 +120,64 @@ fn instant(model: &mut Model, leg: usize) -> Kernel {
     .matrix("qd_qd", qd_qd, "∂²/∂q̇∂q̇")
 }
 
-/// Second derivatives of a touchdown's weighted results, by the adjoint of its linear system.
-fn touchdown(model: &mut Model, leg: usize) -> Kernel {
-    let impact = super::impact::Touchdown::new(model, leg);
-    let (q, qd) = (model.q(0), model.q(1));
-    let xi = symbols(model, "xi", q.len());
-    let outputs = symbols(model, "w", impact.outputs.len());
-    let factors = Factors::new(&mut model.ring, &impact.inertia);
-    let solution = factors.solve(&mut model.ring, &impact.before);
-    let insert: BTreeMap<Var, Poly> = impact.plus.iter().copied().zip(solution).collect();
+/// A touchdown's results, each with its weight, and the adjoint of its linear system.
+pub struct Landing {
+    /// Weights of q̇⁺.
+    pub xi: Vec<Var>,
+    /// Weights of the other results.
+    pub outputs: Vec<Var>,
+    /// Symbols of q̇⁺.
+    pub plus: Vec<Var>,
+    /// A sum whose partial derivatives, with q̇⁺ and the adjoint held, are total ones of the weighted results.
+    pub sum: Poly,
+    /// q̇⁺ and the adjoint, to be inserted after differentiation.
+    pub solution: BTreeMap<Var, Poly>,
+}
 
-    let mut direct = Poly::zero();
-    for (weight, output) in outputs.iter().zip(&impact.outputs) {
-        direct += &(&Poly::from(*weight) * output);
+impl Landing {
+    pub fn new(model: &mut Model, leg: usize) -> Landing {
+        let impact = super::impact::Touchdown::new(model, leg);
+        let q = model.q(0);
+        let xi = symbols(model, "xi", q.len());
+        let outputs = symbols(model, "w", impact.outputs.len());
+        let factors = Factors::new(&mut model.ring, &impact.inertia);
+        let solution = factors.solve(&mut model.ring, &impact.before);
+        let insert: BTreeMap<Var, Poly> = impact.plus.iter().copied().zip(solution).collect();
+
+        let mut direct = Poly::zero();
+        for (weight, output) in outputs.iter().zip(&impact.outputs) {
+            direct += &(&Poly::from(*weight) * output);
+        }
+        // Aq ζ = ξ + ∂(weighted outputs)/∂q̇⁺
+        let right: Vec<Poly> = xi
+            .iter()
+            .zip(&impact.plus)
+            .map(|(x, plus)| {
+                let through = model.ring.derivative(&direct, *plus);
+                &Poly::from(*x) + &model.ring.substitute(&through, &insert)
+            })
+            .collect();
+        let zeta = factors.solve(&mut model.ring, &right);
+        let adjoint = symbols(model, "zeta", q.len());
+        let solution = insert.into_iter().chain(adjoint.iter().copied().zip(zeta)).collect();
+        let mut sum = direct;
+        for (z, residual) in adjoint.iter().zip(&impact.residual) {
+            sum += &(&Poly::from(*z) * residual);
+        }
+        Landing { xi, outputs, plus: impact.plus, sum, solution }
     }
-    // Aq ζ = ξ + ∂(weighted outputs)/∂q̇⁺
-    let right: Vec<Poly> = xi
-        .iter()
-        .zip(&impact.plus)
-        .map(|(x, plus)| {
-            let through = model.ring.derivative(&direct, *plus);
-            &Poly::from(*x) + &model.ring.substitute(&through, &insert)
-        })
-        .collect();
-    let zeta = factors.solve(&mut model.ring, &right);
-    let adjoint = symbols(model, "zeta", q.len());
-    let insert_all: BTreeMap<Var, Poly> = insert.into_iter().chain(adjoint.iter().copied().zip(zeta)).collect();
-    let mut sum = direct;
-    for (z, residual) in adjoint.iter().zip(&impact.residual) {
-        sum += &(&Poly::from(*z) * residual);
-    }
+}
+
+/// Second derivatives of a touchdown's weighted results.
+fn touchdown(model: &mut Model, leg: usize) -> Kernel {
+    let (q, qd) = (model.q(0), model.q(1));
+    let Landing { xi, outputs, plus, sum, solution } = Landing::new(model, leg);
     let by_q: Vec<Poly> = q.iter().map(|s| model.ring.derivative(&sum, *s)).collect();
     let mut block = |by: &[Var]| -> Vec<Vec<Poly>> {
         let raw = model.jacobian(&by_q, by);
-        raw.iter().map(|row| row.iter().map(|p| model.ring.substitute(p, &insert_all)).collect()).collect()
+        raw.iter().map(|row| row.iter().map(|p| model.ring.substitute(p, &solution)).collect()).collect()
     };
-    let (qq, q_qd, q_plus) = (block(&q), block(&qd), block(&impact.plus));
+    let (qq, q_qd, q_plus) = (block(&q), block(&qd), block(&plus));
     Kernel::new(
         format!("touchdown_curvature{}", leg + 1),
         "Second derivatives of a touchdown's results, weighted: q̇⁺ (xi), then impulse, leaving and landing velocity \

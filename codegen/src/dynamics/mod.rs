@@ -9,28 +9,65 @@ mod floating;
 mod impact;
 mod kernel;
 mod kinematics;
+mod lumps;
 mod model;
 mod quantities;
+mod sensitivity;
 mod solve;
 mod staging;
 mod stance;
 
 pub use kernel::{Input, Kernel, Output, Shape};
+pub use lumps::{LUMPS, PARAMETERS};
 pub use model::Model;
 pub use quantities::{BodyQuantities, Quantities};
 
-use crate::mechanism::Mechanism;
+use crate::mechanism::{Family, Mechanism};
+use lumps::Lumps;
 
 /// All kernels of a gait, in the order in which they are emitted.
 pub fn kernels(mechanism: &Mechanism) -> (Model, Vec<Kernel>) {
     let mut model = Model::new(mechanism);
-    let mut kernels = floating::kernels(&mut model);
-    for leg in 0..2 {
-        kernels.extend(stance::kernels(&mut model, leg));
-        kernels.extend(staging::kernels(&mut model, leg));
-        kernels.extend(impact::kernels(&mut model, leg));
-        kernels.extend(curvature::kernels(&mut model, leg));
-    }
-    kernels.push(impact::both_feet(&mut model));
+    let kernels = derive(&mut model);
     (model, kernels)
+}
+
+fn derive(model: &mut Model) -> Vec<Kernel> {
+    let mut kernels = floating::kernels(model);
+    for leg in 0..2 {
+        kernels.extend(stance::kernels(model, leg));
+        kernels.extend(staging::kernels(model, leg));
+        kernels.extend(impact::kernels(model, leg));
+        kernels.extend(curvature::kernels(model, leg));
+    }
+    kernels.push(impact::both_feet(model));
+    kernels
+}
+
+/// The kernels of a gait of a family of robots.
+pub struct FamilyKernels {
+    /// As those of one robot, but with the lumped parameters as their first input.
+    pub gait: Vec<Kernel>,
+    /// Gradients in the lumped parameters, which are their first input too.
+    pub sensitivity: Vec<Kernel>,
+    /// From the parameters: the mechanism's numbers, the lumped parameters and their Jacobian.
+    pub parameters: [Kernel; 3],
+}
+
+/// All kernels of a gait of a family of robots.
+pub fn family_kernels(family: &Family) -> (Model, FamilyKernels) {
+    let mut model = Model::of_family(family);
+    let mut gait = derive(&mut model);
+    let weighted: Vec<_> = (0..2).flat_map(|leg| sensitivity::weighted(&mut model, leg)).collect();
+    let mut lumps = Lumps::default();
+    for value in gait.iter_mut().flat_map(|k| &mut k.outputs).flat_map(|o| &mut o.values) {
+        *value = lumps.rewrite(&mut model.ring, value);
+    }
+    let weighted: Vec<_> = weighted.into_iter().map(|w| w.lumped(&mut model, &mut lumps)).collect();
+    let mut sensitivity: Vec<Kernel> = weighted.into_iter().map(|w| w.gradient(&mut model, &lumps)).collect();
+    for kernel in gait.iter_mut().chain(&mut sensitivity) {
+        kernel.inputs.insert(0, Input { name: LUMPS, symbols: lumps.symbols.clone(), scalar: false });
+    }
+    let parameters = lumps.kernels(&model);
+    (model, FamilyKernels { gait, sensitivity, parameters })
 }

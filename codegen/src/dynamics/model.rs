@@ -3,13 +3,15 @@
 use super::kinematics::{Coordinates, Kinematics, Vec3, add, cross, dot, subtract, zero};
 use super::quantities::Quantities;
 use crate::expr::{Poly, Ring, Var};
-use crate::mechanism::Mechanism;
+use crate::mechanism::{Family, Mechanism};
 use std::collections::BTreeMap;
 
 /// Symbols, kinematics and mechanism of one gait.
 pub struct Model {
     pub mechanism: Mechanism,
     pub quantities: Quantities,
+    /// What stays symbolic of the robot: none, unless it is a family.
+    pub parameters: Vec<Var>,
     pub ring: Ring,
     pub coordinates: Coordinates,
     pub kinematics: Kinematics,
@@ -26,11 +28,21 @@ pub enum Origin {
 
 impl Model {
     pub fn new(mechanism: &Mechanism) -> Model {
+        Model::with(Ring::new(), mechanism, Quantities::constant(mechanism), Vec::new())
+    }
+
+    /// The model of a family of robots, with its parameters as symbols.
+    pub fn of_family(family: &Family) -> Model {
         let mut ring = Ring::new();
+        let parameters: Vec<Var> = family.parameters.iter().map(|p| ring.parameter(p.name.replace('.', "_"))).collect();
+        let quantities = Quantities::of_family(family, &parameters);
+        Model::with(ring, &family.mechanism, quantities, parameters)
+    }
+
+    fn with(mut ring: Ring, mechanism: &Mechanism, quantities: Quantities, parameters: Vec<Var>) -> Model {
         let coordinates = Coordinates::new(&mut ring, mechanism);
-        let quantities = Quantities::constant(mechanism);
         let kinematics = Kinematics::new(&mut ring, mechanism, &quantities, &coordinates);
-        Model { mechanism: mechanism.clone(), quantities, ring, coordinates, kinematics }
+        Model { mechanism: mechanism.clone(), quantities, parameters, ring, coordinates, kinematics }
     }
 
     /// p as a vector (z = 0 where the platform does not move sideways).

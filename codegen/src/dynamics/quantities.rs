@@ -1,11 +1,13 @@
 //! The mechanism's numbers as expressions: constants, or sums of parameters of the real robot.
 
-use crate::expr::Poly;
-use crate::mechanism::Mechanism;
+use crate::expr::{Poly, Var};
+use crate::mechanism::{Family, Mechanism};
 
 /// What of a mechanism is measured, in the order of [`Mechanism::numbers`]; SI units.
 #[derive(Clone, Debug)]
 pub struct Quantities {
+    /// All of them.
+    pub numbers: Vec<Poly>,
     pub gravity: Poly,
     pub bodies: Vec<BodyQuantities>,
     /// Of each joint, seen at the joint.
@@ -25,13 +27,25 @@ pub struct BodyQuantities {
 
 impl Quantities {
     pub fn constant(mechanism: &Mechanism) -> Quantities {
-        Quantities::new(mechanism, mechanism.numbers().into_iter().map(Poly::constant))
+        Quantities::new(mechanism, mechanism.numbers().into_iter().map(Poly::constant).collect())
+    }
+
+    /// With a symbol for each parameter of the family.
+    pub fn of_family(family: &Family, parameters: &[Var]) -> Quantities {
+        let number = |k: usize| {
+            let mut sum = Poly::constant(family.base[k]);
+            for (parameter, slope) in parameters.iter().zip(&family.slopes) {
+                sum += &Poly::from(*parameter).scaled(slope[k]);
+            }
+            sum
+        };
+        Quantities::new(&family.mechanism, (0..family.base.len()).map(number).collect())
     }
 
     /// From expressions for all of the mechanism's numbers.
-    pub fn new(mechanism: &Mechanism, numbers: impl IntoIterator<Item = Poly>) -> Quantities {
-        let mut numbers = numbers.into_iter();
-        let mut one = || numbers.next().unwrap_or_default();
+    pub fn new(mechanism: &Mechanism, numbers: Vec<Poly>) -> Quantities {
+        let mut rest = numbers.iter().cloned();
+        let mut one = || rest.next().unwrap_or_default();
         let gravity = one();
         let mut bodies = Vec::new();
         for _ in &mechanism.bodies {
@@ -50,7 +64,7 @@ impl Quantities {
             leg.members.iter().for_each(|_| drop([(); 3].map(|()| one())));
             foot
         });
-        Quantities { gravity, bodies, rotor_inertia, feet }
+        Quantities { numbers, gravity, bodies, rotor_inertia, feet }
     }
 
     pub fn total_mass(&self) -> Poly {

@@ -25,10 +25,7 @@ impl Early {
         let is_late = |v: Var| sin.contains(v) || cos.contains(v);
         let mut late = Poly::zero();
         for (monomial, early) in model.ring.staged(&split, is_late) {
-            let coefficient = match early.as_constant() {
-                Some(c) => Poly::constant(c),
-                None => self.symbol(model, early),
-            };
+            let coefficient = if model.ring.is_fixed(&early) { early } else { self.symbol(model, early) };
             let mut factor = Poly::zero();
             factor.add_term(monomial, 1.0);
             late += &(&coefficient * &factor);
@@ -40,10 +37,10 @@ impl Early {
     fn symbol(&mut self, model: &mut Model, early: Poly) -> Poly {
         let negative = -&early;
         for (symbol, value) in self.symbols.iter().zip(&self.values) {
-            if same(value, &early) {
+            if value.is_close_to(&early) {
                 return (*symbol).into();
             }
-            if same(value, &negative) {
+            if value.is_close_to(&negative) {
                 return Poly::from(*symbol).scaled(-1.0);
             }
         }
@@ -52,11 +49,6 @@ impl Early {
         self.values.push(early);
         symbol.into()
     }
-}
-
-/// Equal but for rounding of the coefficients.
-fn same(a: &Poly, b: &Poly) -> bool {
-    a.len() == b.len() && a.terms().zip(b.terms()).all(|((m, c), (n, d))| m == n && (c - d).abs() <= 1e-13 * c.abs())
 }
 
 pub fn kernels(model: &mut Model, leg: usize) -> Vec<Kernel> {

@@ -6,7 +6,7 @@ use crate::spec::{HalfSteps, Rotation};
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
-fn float(value: f64) -> TokenStream {
+pub(super) fn float(value: f64) -> TokenStream {
     let literal = Literal::f64_unsuffixed(value.abs());
     if value.is_sign_negative() && value != 0.0 { quote!(-#literal) } else { quote!(#literal) }
 }
@@ -44,7 +44,7 @@ pub fn description(m: &Mechanism, key: &str, functions: &[Function], runtime: &T
             let (name, mount) = (&r.name, floats(&r.mount));
             quote!(#runtime::Member { name: #name, mount: #mount })
         });
-        quote!(#runtime::Leg { members: &[#(#members),*], first_joint: #start, end_joint: #end, foot_body: #body, foot: #foot })
+        quote!(#runtime::Leg { members: std::borrow::Cow::Borrowed(&[#(#members),*]), first_joint: #start, end_joint: #end, foot_body: #body, foot: #foot })
     });
     let rotation = ident(match m.rotation {
         Rotation::None => "None",

@@ -12,6 +12,7 @@ use std::collections::{BTreeMap, BTreeSet};
 const BLOCK: usize = 200;
 
 /// A kernel with its program, ready to be written.
+#[derive(Clone)]
 pub struct Function<'a> {
     pub ring: &'a Ring,
     pub kernel: &'a Kernel,

@@ -4,7 +4,7 @@ use super::description::description;
 use super::function::{Function, base_name, ident};
 use super::modules::key;
 use super::type_name;
-use crate::dynamics::{Kernel, Shape, kernels};
+use crate::dynamics::{Input, Kernel, LUMPS, PARAMETERS, Shape, kernels};
 use crate::mechanism::Mechanism;
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -18,16 +18,7 @@ use std::collections::{BTreeMap, BTreeSet};
 pub fn gait_source(mechanism: &Mechanism, robot: &str, runtime: Option<&str>, origin: &str) -> Result<String, String> {
     let (model, kernels) = kernels(mechanism);
     let functions: Vec<Function> = kernels.iter().map(|k| Function::new(&model.ring, k)).collect();
-    let mut structs = BTreeSet::new();
-    let mut items = TokenStream::new();
-    for function in &functions {
-        if let Some((name, source)) = function.output_struct()
-            && structs.insert(name)
-        {
-            items.extend(source);
-        }
-        items.extend(function.source());
-    }
+    let items = items(&functions);
     let gait = match runtime {
         Some(runtime) => implementation(mechanism, &key(robot, &mechanism.gait), &functions, runtime)?,
         None => TokenStream::new(),
@@ -37,13 +28,36 @@ pub fn gait_source(mechanism: &Mechanism, robot: &str, runtime: Option<&str>, or
         #items
         #gait
     };
+    written(file, origin)
+}
+
+/// The functions of a module, with the structs that they return.
+pub(super) fn items(functions: &[Function]) -> TokenStream {
+    let mut structs = BTreeSet::new();
+    let mut items = TokenStream::new();
+    for function in functions {
+        if let Some((name, source)) = function.output_struct()
+            && structs.insert(name)
+        {
+            items.extend(source);
+        }
+        items.extend(function.source());
+    }
+    items
+}
+
+pub(super) fn path(runtime: &str) -> Result<TokenStream, String> {
+    runtime.parse().map_err(|e| format!("`{runtime}` is not a path: {e}"))
+}
+
+pub(super) fn written(file: TokenStream, origin: &str) -> Result<String, String> {
     let parsed = syn::parse2::<syn::File>(file).map_err(|e| format!("generated code does not parse: {e}"))?;
     Ok(format!("// {origin}\n{}", prettyplease::unparse(&parsed)))
 }
 
 /// The gait's type with its description and its `impl Gait`.
 fn implementation(m: &Mechanism, key: &str, functions: &[Function], runtime: &str) -> Result<TokenStream, String> {
-    let runtime: TokenStream = runtime.parse().map_err(|e| format!("`{runtime}` is not a path: {e}"))?;
+    let runtime = path(runtime)?;
     let name = ident(&type_name(&m.gait));
     let doc = format!(" The {} of `{}`.", m.gait, m.robot);
     let description = description(m, key, functions, &runtime);
@@ -62,7 +76,7 @@ fn implementation(m: &Mechanism, key: &str, functions: &[Function], runtime: &st
 }
 
 /// Trait methods: per kernel one that takes slices and writes all outputs one after another.
-fn methods(functions: &[Function]) -> TokenStream {
+pub(super) fn methods(functions: &[Function]) -> TokenStream {
     let mut by_base: BTreeMap<&str, Vec<&Kernel>> = BTreeMap::new();
     let mut order = Vec::new();
     for function in functions {
@@ -78,7 +92,7 @@ fn methods(functions: &[Function]) -> TokenStream {
         let (name, twins) = (ident(base), &by_base[base]);
         let per_leg = base_name(&twins[0].name).1;
         let leg = per_leg.then(|| quote!(leg: usize,));
-        let parameters = twins[0].inputs.iter().map(|i| {
+        let parameters = twins[0].inputs.iter().filter(|i| !is_of_robot(i)).map(|i| {
             let name = ident(i.name);
             if i.scalar { quote!(#name: f64) } else { quote!(#name: &[f64]) }
         });
@@ -96,11 +110,27 @@ fn methods(functions: &[Function]) -> TokenStream {
     methods
 }
 
+/// Whether an input is a property of the robot rather than of its state.
+fn is_of_robot(input: &Input) -> bool {
+    input.name == LUMPS || input.name == PARAMETERS
+}
+
 /// A call with checked lengths; outputs that do not fit the inputs become NaN rather than a panic.
 fn call(kernel: &Kernel) -> TokenStream {
     let function = ident(&kernel.name);
-    let arrays: Vec<_> = kernel.inputs.iter().filter(|i| !i.scalar).map(|i| ident(i.name)).collect();
-    let arguments = kernel.inputs.iter().map(|i| ident(i.name));
+    let arrays: Vec<_> = kernel.inputs.iter().filter(|i| !i.scalar && !is_of_robot(i)).map(|i| ident(i.name)).collect();
+    let arguments = kernel.inputs.iter().map(|i| {
+        let name = ident(i.name);
+        if is_of_robot(i) { quote!(&self.#name) } else { quote!(#name) }
+    });
+    let checks = (!arrays.is_empty()).then(|| {
+        quote! {
+            let (#(Some(#arrays),)*) = (#(#arrays.first_chunk(),)*) else {
+                out.fill(f64::NAN);
+                return;
+            };
+        }
+    });
     let write = |value: TokenStream, shape: Shape| match shape {
         Shape::Scalar => quote!(core::slice::from_ref(&#value)),
         Shape::Vector(_) => quote!(#value.as_slice()),
@@ -117,10 +147,7 @@ fn call(kernel: &Kernel) -> TokenStream {
             .collect(),
     };
     quote! {
-        let (#(Some(#arrays),)*) = (#(#arrays.first_chunk(),)*) else {
-            out.fill(f64::NAN);
-            return;
-        };
+        #checks
         let r = #function(#(#arguments),*);
         let mut rest = out;
         for piece in [#(#pieces),*] {

@@ -5,10 +5,12 @@
 //! thousands of bindings in one scope.
 
 mod description;
+mod family;
 mod function;
 mod gait;
 mod modules;
 
+pub use family::{families_source, family_file_name, family_source};
 pub use gait::gait_source;
 pub use modules::{check_modules, file_name, registry_source};
 

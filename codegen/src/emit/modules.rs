@@ -49,29 +49,49 @@ pub fn check_modules(robots: &[(&str, Vec<String>)]) -> Result<(), String> {
 
 /// Source of the module that holds all gaits of a build.
 pub fn registry_source(robots: &[(&str, Vec<String>)], runtime: Option<&str>, origin: &str) -> String {
-    let mut source =
-        format!("// {origin}\n/// Elementary functions with pinned results.\npub mod math {{\n{MATH}\n}}\n");
-    let mut all = Vec::new();
-    for (robot, gaits) in robots {
-        let modules: String = gaits.iter().map(|gait| gait_module(robot, gait)).collect();
-        if robot.is_empty() {
-            source += &modules;
-        } else {
-            source +=
-                &format!("/// Gaits of the robot `{robot}`.\npub mod {robot} {{\n    use super::math;\n{modules}}}\n");
-        }
-        let inside = if robot.is_empty() { String::new() } else { format!("{robot}::") };
-        all.extend(gaits.iter().map(|gait| format!("&{inside}{}::{}", module_name(gait), type_name(gait))));
-    }
+    let mut source = tree(robots, file_name, |_| String::new(), origin);
     if let Some(runtime) = runtime {
+        let all: Vec<String> = paths(robots).iter().map(|(module, name)| format!("&{module}::{name}")).collect();
         let all = all.join(", ");
         source += &format!("/// All gaits of this build.\npub static GAITS: &[&dyn {runtime}::Gait] = &[{all}];\n");
     }
     source
 }
 
-fn gait_module(robot: &str, gait: &str) -> String {
-    let (module, file) = (module_name(gait), file_name(robot, gait));
+/// The module and type of every gait.
+pub(super) fn paths(robots: &[(&str, Vec<String>)]) -> Vec<(String, String)> {
+    let of = |robot: &str, gait: &str| {
+        let inside = if robot.is_empty() { String::new() } else { format!("{robot}::") };
+        (inside + &module_name(gait), type_name(gait))
+    };
+    robots.iter().flat_map(|(robot, gaits)| gaits.iter().map(move |gait| of(robot, gait))).collect()
+}
+
+/// A module for each gait, in that of its robot with what `shared` has for the robot, and the one with the
+/// elementary functions. `file` names the files to include.
+pub(super) fn tree(
+    robots: &[(&str, Vec<String>)],
+    file: fn(&str, &str) -> String,
+    shared: impl Fn(usize) -> String,
+    origin: &str,
+) -> String {
+    let mut source =
+        format!("// {origin}\n/// Elementary functions with pinned results.\npub mod math {{\n{MATH}\n}}\n");
+    for (k, (robot, gaits)) in robots.iter().enumerate() {
+        let modules: String = gaits.iter().map(|gait| gait_module(gait, &file(robot, gait))).collect();
+        let items = shared(k) + &modules;
+        if robot.is_empty() {
+            source += &items;
+        } else {
+            source +=
+                &format!("/// Gaits of the robot `{robot}`.\npub mod {robot} {{\n    use super::math;\n{items}}}\n");
+        }
+    }
+    source
+}
+
+fn gait_module(gait: &str, file: &str) -> String {
+    let module = module_name(gait);
     format!(
         "/// Generated dynamics of the {gait}.\n#[rustfmt::skip]\n#[allow(clippy::all, clippy::pedantic)]\n\
          pub mod {module} {{\n    include!(concat!(env!(\"OUT_DIR\"), \"/{file}\"));\n}}\n"

@@ -138,6 +138,12 @@ impl Poly {
         Poly { terms: self.terms.iter().filter(|(m, _)| keep(m)).map(|(m, c)| (m.clone(), *c)).collect() }
     }
 
+    /// Equal but for rounding of the coefficients.
+    pub fn is_close_to(&self, other: &Poly) -> bool {
+        let close = |c: f64, d: f64| (c - d).abs() <= 1e-13 * c.abs();
+        self.len() == other.len() && self.terms().zip(other.terms()).all(|((m, c), (n, d))| m == n && close(c, d))
+    }
+
     pub fn contains(&self, var: Var) -> bool {
         self.terms.keys().any(|m| m.contains(&var))
     }

@@ -5,7 +5,7 @@
 
 use super::poly::{Monomial, Poly, Var, times};
 use std::cell::RefCell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What an atom stands for.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,6 +27,8 @@ pub enum Kind {
 pub struct Ring {
     plain: Vec<Kind>,
     angles: Vec<Vec<Var>>,
+    /// Parameters and what is defined by them alone: known before anything moves.
+    fixed: BTreeSet<Var>,
     /// Coordinate or rate → its time derivative.
     rates: BTreeMap<Var, Var>,
     /// Memo of sums of symbols (rates of angles), so that each is bound once.
@@ -43,6 +45,18 @@ impl Ring {
         self.push(Kind::Symbol(name.into()))
     }
 
+    /// A symbol that is known before anything moves.
+    pub fn parameter(&mut self, name: impl Into<String>) -> Var {
+        let parameter = self.symbol(name);
+        self.fixed.insert(parameter);
+        parameter
+    }
+
+    /// Whether the value of an expression follows from parameters alone.
+    pub fn is_fixed(&self, p: &Poly) -> bool {
+        p.terms().all(|(m, _)| m.iter().all(|v| self.fixed.contains(v)))
+    }
+
     /// A coordinate with its rate and acceleration: symbols `name`, `name_d`, `name_dd`.
     pub fn coordinate(&mut self, name: &str) -> [Var; 3] {
         let q = self.symbol(name);
@@ -54,8 +68,14 @@ impl Ring {
     }
 
     fn push(&mut self, kind: Kind) -> Var {
+        let atom = Var::plain(self.plain.len());
+        if let Kind::Bound(definition) | Kind::Reciprocal(definition) = &kind
+            && self.is_fixed(definition)
+        {
+            self.fixed.insert(atom);
+        }
         self.plain.push(kind);
-        Var::plain(self.plain.len() - 1)
+        atom
     }
 
     /// An atom for the value of `definition` (the atom or constant itself where it already is one).
@@ -273,6 +293,25 @@ impl Ring {
         self.substitute(p, &map)
     }
 
+    /// What a bound atom stands for, or one over.
+    pub fn definition(&self, atom: Var) -> Option<Poly> {
+        match self.kind(atom) {
+            Kind::Bound(definition) | Kind::Reciprocal(definition) => Some(definition),
+            _ => None,
+        }
+    }
+
+    /// Replaces the definition of a bound atom by an equal expression.
+    pub fn redefine(&mut self, atom: Var, equal: Poly) {
+        if !atom.is_sin()
+            && !atom.is_cos()
+            && let Kind::Bound(definition) | Kind::Reciprocal(definition) = &mut self.plain[atom.index()]
+        {
+            *definition = equal;
+            self.derivatives.borrow_mut().clear();
+        }
+    }
+
     /// Groups an expression by its factors among the atoms for which `late` holds: `Σ late · early`.
     pub fn staged(&self, p: &Poly, late: impl Fn(Var) -> bool) -> BTreeMap<Monomial, Poly> {
         let mut groups: BTreeMap<Monomial, Poly> = BTreeMap::new();
@@ -281,6 +320,11 @@ impl Ring {
             groups.entry(l).or_default().add_term(e, c);
         }
         groups
+    }
+
+    /// Groups an expression by what moves: `Σ moving · fixed`.
+    pub fn by_motion(&self, p: &Poly) -> BTreeMap<Monomial, Poly> {
+        self.staged(p, |v| !self.fixed.contains(&v))
     }
 
     /// Numeric value, for tests: `values` gives the symbols.

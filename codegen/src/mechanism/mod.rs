@@ -3,6 +3,12 @@
 //! This is where virtual legs come from (§2.1): the real legs that move together become one leg
 //! whose hip is the mean of their mounts and whose masses and inertias are their sums ([`Robot::virtual_leg`]).
 
+mod family;
+mod parameter;
+
+pub use family::Family;
+pub use parameter::{Parameter, Sign, parameters, select, with};
+
 use crate::spec::{Axis, Gait, HalfSteps, Inertia, Joint, Limits, Robot, Rotation, Unactuated};
 
 /// The tree of rigid bodies of one gait's model; SI units, body axes x forward, y up, z right.

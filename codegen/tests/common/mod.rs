@@ -2,9 +2,9 @@
 #![allow(dead_code, reason = "each test binary uses its part")]
 
 use piaffe_codegen::SpecFile;
-use piaffe_codegen::dynamics::{Kernel, Model, kernels};
-use piaffe_codegen::mechanism::Mechanism;
-use piaffe_codegen::spec::{parse_gait, parse_robot};
+use piaffe_codegen::dynamics::{Kernel, LUMPS, Model, PARAMETERS, family_kernels, kernels};
+use piaffe_codegen::mechanism::{Family, Mechanism, parameters};
+use piaffe_codegen::spec::{Gait, Robot, parse_gait, parse_robot};
 use std::collections::BTreeMap;
 
 pub const GAITS: [&str; 4] = ["trot", "curvet", "amble", "rabbit/walk"];
@@ -26,16 +26,23 @@ pub fn spec_file(path: &str) -> SpecFile {
 
 /// The mechanism of a shipped gait.
 pub fn shipped(gait: &str) -> Mechanism {
+    let (robot, gait) = specification(gait);
+    Mechanism::new(&robot.locked(&gait.locked).unwrap(), &gait)
+}
+
+/// The robot and the gait of a shipped gait.
+pub fn specification(gait: &str) -> (Robot, Gait) {
     let (_, robot, gait) = files(gait);
     let robot = parse_robot(&robot.path, &robot.text).unwrap();
     let gait = parse_gait(&gait.path, &gait.text, &robot).unwrap();
-    Mechanism::new(&robot.robot.locked(&gait.locked).unwrap(), &gait)
+    (robot.robot, gait)
 }
 
 /// A mechanism with all its kernels as expressions.
 pub struct Derived {
     pub model: Model,
     pub kernels: Vec<Kernel>,
+    of_robot: Vec<(&'static str, Vec<f64>)>,
 }
 
 /// Output arrays of a kernel by name.
@@ -44,7 +51,25 @@ pub struct Outputs(Vec<(&'static str, Vec<f64>)>);
 impl Derived {
     pub fn new(mechanism: &Mechanism) -> Derived {
         let (model, kernels) = kernels(mechanism);
-        Derived { model, kernels }
+        Derived { model, kernels, of_robot: Vec::new() }
+    }
+
+    /// A shipped gait with all numbers of the robot as parameters.
+    pub fn of_family(gait: &str) -> Derived {
+        let (robot, gait) = specification(gait);
+        let chosen = parameters(&robot);
+        let values: Vec<f64> = chosen.iter().map(|p| p.value).collect();
+        let (model, kernels) = family_kernels(&Family::new(&robot, &gait, chosen).unwrap());
+        let kernels = kernels.gait.into_iter().chain(kernels.sensitivity).chain(kernels.parameters).collect();
+        let mut family = Derived { model, kernels, of_robot: vec![(PARAMETERS, values.clone())] };
+        let lumps = family.run(LUMPS, &[&values]).get(LUMPS).to_vec();
+        family.of_robot.push((LUMPS, lumps));
+        family
+    }
+
+    /// The shipped robot's values of an input that is no part of its state.
+    pub fn of_robot(&self, input: &str) -> Option<Vec<f64>> {
+        self.of_robot.iter().find(|(name, _)| *name == input).map(|(_, values)| values.clone())
     }
 
     pub fn mechanism(&self) -> &Mechanism {

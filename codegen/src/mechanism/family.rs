@@ -1,0 +1,67 @@
+//! A mechanism whose numbers are expressions in parameters of the real robot.
+//!
+//! Where legs that move as one share their links, the reduction to virtual legs takes sums, means and
+//! multiples: it is affine in the robot's numbers. So its coefficients are what it makes of unit robots,
+//! in which one number is 1 and all others are 0.
+
+use super::Mechanism;
+use super::parameter::{Parameter, parameters, with};
+use crate::spec::{Gait, Robot};
+
+/// The mechanisms of all robots that differ in some parameters.
+#[derive(Clone, Debug)]
+pub struct Family {
+    /// That of the specification.
+    pub mechanism: Mechanism,
+    pub parameters: Vec<Parameter>,
+    /// [`Mechanism::numbers`] where all parameters are zero.
+    pub base: Vec<f64>,
+    /// What each parameter adds to these per unit.
+    pub slopes: Vec<Vec<f64>>,
+}
+
+impl Family {
+    /// The family of `robot` in `chosen` parameters.
+    ///
+    /// # Errors
+    /// If the mechanism is not affine in them: where a virtual leg or a locked joint makes one body of several.
+    pub fn new(robot: &Robot, gait: &Gait, chosen: Vec<Parameter>) -> Result<Family, String> {
+        let mechanism = |robot: &Robot| -> Result<Mechanism, String> {
+            let robot = robot.locked(&gait.locked).map_err(|t| format!("`{}` is tilted", t.joint))?;
+            Ok(Mechanism::new(&robot, gait))
+        };
+        let is_chosen = |name: &str| chosen.iter().any(|p| p.name == name);
+        let rest = with(robot, |name| is_chosen(name).then_some(0.0));
+        let all = parameters(robot);
+        let unit = |of: &str| with(robot, |name| all.iter().any(|p| p.name == name).then_some(f64::from(name == of)));
+        let slopes = chosen.iter().map(|p| Ok(mechanism(&unit(&p.name))?.numbers()));
+        let family = Family {
+            mechanism: mechanism(robot)?,
+            base: mechanism(&rest)?.numbers(),
+            slopes: slopes.collect::<Result<_, String>>()?,
+            parameters: chosen,
+        };
+        // Another robot: every number changes by a share of its own.
+        let value = |k: usize| family.parameters[k].value * (1.0 + 0.1 / (k + 2) as f64);
+        let changed = with(robot, |name| family.parameters.iter().position(|p| p.name == name).map(value));
+        if family.shares_links(robot, gait) && family.gives(&mechanism(&changed)?.numbers(), value) {
+            return Ok(family);
+        }
+        Err(format!(
+            "the {} joins links with parameters of their own into one body or leg: a family needs legs that move as one to \
+             share their links, and no locked joints between links whose numbers are parameters",
+            gait.name
+        ))
+    }
+
+    fn shares_links(&self, robot: &Robot, gait: &Gait) -> bool {
+        let links = |leg: &usize| robot.legs[*leg].chain.iter().map(|segment| segment.link.name.as_str());
+        gait.virtual_legs.iter().all(|legs| legs.iter().all(|leg| links(leg).eq(links(&legs[0]))))
+    }
+
+    /// Whether these are the mechanism's numbers for the parameters' values.
+    fn gives(&self, numbers: &[f64], value: impl Fn(usize) -> f64) -> bool {
+        let affine = |i: usize| self.slopes.iter().enumerate().fold(self.base[i], |sum, (k, s)| sum + s[i] * value(k));
+        numbers.iter().enumerate().all(|(i, number)| (affine(i) - number).abs() <= 1e-9 * number.abs().max(1e-6))
+    }
+}

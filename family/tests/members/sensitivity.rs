@@ -1,0 +1,114 @@
+//! Sensitivities in the parameters against differences between neighbouring robots.
+
+use super::draws::{GENERAL, member};
+use super::kernels::{assert_close, filled, vector};
+use piaffe::model::family::{Family, Parametric};
+use piaffe_family::FAMILIES;
+
+/// Of sums of outputs that are of order one or more.
+const TOLERANCE: f64 = 1e-7;
+
+/// Gradient of `value` in the parameters of `robot` by central differences.
+fn differences(family: &Family, robot: &dyn Parametric, value: impl Fn(&dyn Parametric) -> f64) -> Vec<f64> {
+    let at = |k: usize, h: f64| {
+        let mut values = robot.parameters().to_vec();
+        values[k] += h;
+        value(&*(family.member)(&values).unwrap())
+    };
+    let slope = |k: usize| {
+        // Inertias are small numbers.
+        let h = 1e-4 * robot.parameters()[k].abs().max(1e-3);
+        // Fourth order, so that rounding can be kept small.
+        (8.0 * (at(k, h) - at(k, -h)) - (at(k, 2.0 * h) - at(k, -2.0 * h))) / (12.0 * h)
+    };
+    (0..robot.parameters().len()).map(slope).collect()
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// 5 random robots of every gait, each on both legs.
+fn each(check: impl Fn(&Family, &dyn Parametric, usize, &mut fastrand::Rng)) {
+    for family in FAMILIES {
+        let mut rng = fastrand::Rng::with_seed(5);
+        for k in 0..10 {
+            let robot = member(family, &GENERAL, &mut rng);
+            check(family, &*robot, k % 2, &mut rng);
+        }
+    }
+}
+
+#[test]
+fn of_inverse_dynamics() {
+    each(|family, robot, leg, rng| {
+        let d = robot.description();
+        let (n, joints, np) = (d.orientations(), d.joints(), d.positions());
+        let (q, qd, qdd) = (vector(n, 0.8, rng), vector(n, 4.0, rng), vector(d.prescribed(), 30.0, rng));
+        let jacobian = |m: &dyn Parametric| {
+            filled(1 + (joints + np) + (joints + np + 1) * 3 * n, |o| m.inverse_jacobian(leg, &q, &qd, &qdd, o))
+        };
+        let own = jacobian(robot);
+        let mut all: Vec<f64> = (0..n - 1).map(|k| qdd[k]).collect();
+        all.insert(d.unactuated, own[0]);
+        let by_beta: Vec<f64> = own[1 + joints + np..].chunks(3 * n).map(|row| row[2 * n + d.unactuated]).collect();
+        let f1 = by_beta[joints + np];
+        if f1.abs() < 0.05 {
+            return; // eq. 10 is close to singular
+        }
+        // β̈ follows from the balance: its weight is the adjoint.
+        let weights = vector(joints + np, 1.0, rng);
+        let (mut gamma, phi) = (weights[..joints].to_vec(), &weights[joints..]);
+        gamma.push(-dot(&weights, &by_beta[..joints + np]) / f1);
+        let by_lump = filled(robot.lumps().len(), |o| robot.sensitivity(leg, &q, &qd, &all, &gamma, phi, &[0.0; 6], o));
+        let value = |m: &dyn Parametric| dot(&weights, &jacobian(m)[1..1 + joints + np]);
+        assert_close("Γ, F", &robot.pull_back(&by_lump), &differences(family, robot, value), TOLERANCE);
+    });
+}
+
+#[test]
+fn of_momentum_heights_and_velocities() {
+    each(|family, robot, leg, rng| {
+        let d = robot.description();
+        let (n, np) = (d.orientations(), d.positions());
+        let (q, qd) = (vector(n, 1.0, rng), vector(n, 5.0, rng));
+        let weights = vector(6, 1.0, rng);
+        let (gamma, phi) = (vec![0.0; d.joints() + 1], vec![0.0; np]);
+        let by_lump = filled(robot.lumps().len(), |o| {
+            robot.sensitivity(leg, &q, &qd, &vec![0.0; n], &gamma, &phi, &weights, o);
+        });
+        let value = |m: &dyn Parametric| {
+            let terms = filled(5, |o| m.momentum_terms(leg, &q, &qd, o));
+            let place = filled(2 * np + 2 * np * n, |o| m.placement(leg, &q, o));
+            let velocity = filled(np + 2 * np * n, |o| m.swing_velocity(leg, &q, &qd, o));
+            dot(&weights, &[terms[2], terms[4], place[np + 1], place[0], velocity[1], place[1]])
+        };
+        let expected = differences(family, robot, value);
+        assert_close("σ, σ̇, heights", &robot.pull_back(&by_lump), &expected, TOLERANCE);
+
+        let weights = vector(3, 1.0, rng);
+        let by_lump = filled(robot.lumps().len(), |o| robot.terms_sensitivity(leg, &q, &qd, &weights, o));
+        let value = |m: &dyn Parametric| {
+            let terms = filled(5, |o| m.momentum_terms(leg, &q, &qd, o));
+            dot(&weights, &[terms[0], terms[1], terms[3]])
+        };
+        assert_close("f1, f2, c", &robot.pull_back(&by_lump), &differences(family, robot, value), TOLERANCE);
+    });
+}
+
+#[test]
+fn of_touchdowns() {
+    each(|family, robot, leg, rng| {
+        let d = robot.description();
+        let (n, np) = (d.orientations(), d.positions());
+        let (q, qd) = (vector(n, 0.8, rng), vector(n, 3.0, rng));
+        let weights = vector(n + np + 2, 1.0, rng);
+        let (xi, outputs) = weights.split_at(n);
+        let by_lump = filled(robot.lumps().len(), |o| robot.touchdown_sensitivity(leg, &q, &qd, xi, outputs, o));
+        let value = |m: &dyn Parametric| {
+            let rows = n + np + 2;
+            dot(&weights, &filled(rows + rows * 2 * n, |o| m.touchdown(leg, &q, &qd, o))[..rows])
+        };
+        assert_close("touchdown", &robot.pull_back(&by_lump), &differences(family, robot, value), TOLERANCE);
+    });
+}
