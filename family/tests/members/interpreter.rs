@@ -2,6 +2,7 @@
 
 use super::draws::{GENERAL, member};
 use super::kernels::{assert_close, call, filled, vector};
+use piaffe::model::Body;
 use piaffe_codegen::dynamics::{Kernel, Model, family_kernels, kernels};
 use piaffe_codegen::mechanism::{Family, Mechanism, parameters, with};
 use piaffe_codegen::spec::{Gait, Robot, parse_gait, parse_robot};
@@ -104,7 +105,8 @@ fn the_specified_robot_is_a_member() {
         let (found, expected) = (specified.description(), folded.description());
         assert_close("masses", &[found.total_mass(), found.gravity], &[expected.total_mass(), expected.gravity], 1e-15);
         for (a, b) in found.bodies.iter().zip(expected.bodies.iter()) {
-            assert_close(a.name, &[a.offset, a.com, a.inertia].concat(), &[b.offset, b.com, b.inertia].concat(), 1e-15);
+            let numbers = |b: &Body| [&b.offset[..], &b.com, b.inertia.as_flattened()].concat();
+            assert_close(a.name, &numbers(a), &numbers(b), 1e-15);
         }
     }
 }
