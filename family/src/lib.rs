@@ -1,4 +1,4 @@
-//! The gaits of `model-spec` for a family of robots: every physical number of the robot is a parameter.
+//! The gaits of `model-spec` for families of robots: every physical number of a robot is a parameter.
 //!
 //! ```
 //! use piaffe::model::family::Parametric;
@@ -6,7 +6,8 @@
 //! use piaffe_family::FAMILIES;
 //!
 //! # fn main() -> Result<(), piaffe::model::family::Unfit> {
-//! let heavy = FAMILIES[0].with(&[("links.thigh.mass", 2.0), ("links.shin.length", 0.16)])?;
+//! let trot = FAMILIES.iter().find(|f| f.description.gait == "trot").expect("a trot in model-spec");
+//! let heavy = trot.with(&[("links.thigh.mass", 2.0), ("links.shin.length", 0.16)])?;
 //! assert_eq!(heavy.parameters()[0], 9.81); // gravity, m/s²
 //! // From here on it is a gait like any other.
 //! let settings = multi_start::Settings { starts: 1, seed: 1 };

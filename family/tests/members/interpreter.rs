@@ -6,14 +6,16 @@ use piaffe::model::Body;
 use piaffe_codegen::dynamics::{Kernel, Model, family_kernels, kernels};
 use piaffe_codegen::mechanism::{Family, Mechanism, parameters, with};
 use piaffe_codegen::spec::{Gait, Robot, parse_gait, parse_robot};
-use piaffe_family::{FAMILIES, PARAMETERS};
+use piaffe_family::FAMILIES;
 use std::collections::BTreeMap;
 
 fn specification(gait: &str) -> (Robot, Gait) {
     let read =
         |path: &str| std::fs::read_to_string(format!("{}/../model-spec/{path}", env!("CARGO_MANIFEST_DIR"))).unwrap();
-    let robot = parse_robot("robot.toml", &read("robot.toml")).unwrap();
-    let path = format!("gaits/{gait}.toml");
+    let (folder, gait) = gait.rsplit_once('/').map_or((String::new(), gait), |(r, g)| (format!("{r}/"), g));
+    let path = format!("{folder}robot.toml");
+    let robot = parse_robot(&path, &read(&path)).unwrap();
+    let path = format!("{folder}gaits/{gait}.toml");
     let gait = parse_gait(&path, &read(&path), &robot).unwrap();
     (robot.robot, gait)
 }
@@ -40,8 +42,9 @@ fn members_compute_what_is_derived_for_their_numbers() {
         let mut rng = fastrand::Rng::with_seed(11);
         for _ in 0..3 {
             let robot_member = member(family, &GENERAL, &mut rng);
-            let value =
-                |name: &str| PARAMETERS.iter().position(|p| p.name == name).map(|k| robot_member.parameters()[k]);
+            let value = |name: &str| {
+                family.parameters.iter().position(|p| p.name == name).map(|k| robot_member.parameters()[k])
+            };
             let (model, derived) = kernels(&Mechanism::new(&with(&robot, value), &gait));
             let (mut folded_early, mut own_early) = (BTreeMap::new(), BTreeMap::new());
             for kernel in &derived {
@@ -78,7 +81,7 @@ fn sensitivities_compute_what_was_derived() {
         let robot_member = member(family, &GENERAL, &mut rng);
         let lumps = interpret(&model, &derived.parameters[1], &[robot_member.parameters().to_vec()]);
         assert_close("lumps", robot_member.lumps(), &lumps, 1e-13);
-        let jacobian = filled(lumps.len() * PARAMETERS.len(), |o| robot_member.lumps_jacobian(o));
+        let jacobian = filled(lumps.len() * family.parameters.len(), |o| robot_member.lumps_jacobian(o));
         let expected = interpret(&model, &derived.parameters[2], &[robot_member.parameters().to_vec()]);
         assert_close("∂lumps/∂parameters", &jacobian, &expected, 1e-13);
         for kernel in &derived.sensitivity {
