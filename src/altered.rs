@@ -43,6 +43,10 @@ impl Gait for Altered<'_> {
         &self.description
     }
 
+    fn latex(&self) -> &'static str {
+        self.gait.latex()
+    }
+
     delegate! {
         inertia(q: &[f64]);
         bias(q: &[f64], qd: &[f64]);

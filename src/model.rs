@@ -127,6 +127,10 @@ pub struct Operations {
     pub flops: usize,
     pub divisions: usize,
     pub sincos: usize,
+    /// What `flops` would be of the expressions as they are derived.
+    pub derived: usize,
+    /// Length of the source.
+    pub bytes: usize,
 }
 
 impl Description {
@@ -221,6 +225,8 @@ pub(crate) fn hash(text: &str) -> u64 {
 #[allow(clippy::too_many_arguments)]
 pub trait Gait: Sync {
     fn description(&self) -> &Description;
+    /// The closed forms of eq. 2–5, 8 and 9 with the names of the robot's parameters: a LaTeX document.
+    fn latex(&self) -> &'static str;
 
     /// A(q): n × n.
     fn inertia(&self, q: &[f64], out: &mut [f64]);

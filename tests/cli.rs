@@ -51,6 +51,31 @@ fn a_level_touchdown_of_the_amble_is_reported_as_singular() {
 }
 
 #[test]
+fn model_shows_what_was_generated() {
+    for gait in ["trot", "amble", "curvet", "rabbit/walk"] {
+        let out = piaffe(&["model", gait, "--json", "-"], "");
+        assert!(out.status.success(), "{}", text(&out.stderr));
+        let model: Value = serde_json::from_slice(&out.stdout).unwrap();
+        let unactuated = if gait == "trot" { "q1" } else { "theta" };
+        assert_eq!(model["unactuated"], serde_json::json!([unactuated]), "{gait}");
+        let bodies = model["bodies"].as_array().unwrap();
+        let mass: f64 = bodies.iter().map(|b| b["mass"].as_f64().unwrap()).sum();
+        assert!((mass - model["mass"].as_f64().unwrap()).abs() < 1e-12);
+        let kernels = model["kernels"].as_array().unwrap();
+        let sum = |key: &str| kernels.iter().map(|k| k[key].as_u64().unwrap()).sum::<u64>();
+        assert!(sum("flops") < sum("derived") && sum("bytes") > 50_000, "{gait}");
+
+        let table = text(&piaffe(&["model", gait], "").stdout);
+        for kernel in kernels {
+            let name = kernel["kernel"].as_str().unwrap();
+            assert!(table.lines().any(|l| l.split_whitespace().next() == Some(name)), "{gait}: no {name} in {table}");
+        }
+        let latex = text(&piaffe(&["model", gait, "--latex"], "").stdout);
+        assert!(latex.starts_with("\\documentclass") && latex.ends_with("\\end{document}\n"));
+    }
+}
+
+#[test]
 fn bad_input_is_named_with_its_place() {
     let out = piaffe(&["dynamics", "trot", "-"], "{\"states\": [\n  {\"X\": [0, 1,}\n]}");
     assert_eq!(out.status.code(), Some(1));

@@ -3,6 +3,7 @@
 use crate::emit;
 use crate::mechanism::{Family, Mechanism, select};
 use crate::spec::{self, Diagnostic, Gait, Robot};
+use crate::typeset::latex;
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
@@ -159,7 +160,9 @@ pub fn generate(robots: &[RobotFiles], runtime: Option<&str>) -> Result<Vec<Gene
     let parsed = parse(robots)?;
     let mut files = for_each_gait(&parsed, |robot, gait, origin| {
         let locked = robot.spec.locked(&gait.locked).map_err(|t| format!("`{}` is tilted", t.joint))?;
-        let source = emit::gait_source(&Mechanism::new(&locked, gait), &robot.files.module, runtime, origin)?;
+        let mechanism = Mechanism::new(&locked, gait);
+        let latex = latex(&robot.spec, gait, &mechanism);
+        let source = emit::gait_source(&mechanism, &robot.files.module, &latex, runtime, origin)?;
         Ok((emit::file_name(&robot.files.module, &gait.name), source))
     })?;
     files.push(("gaits.rs".into(), emit::registry_source(&modules(&parsed), runtime, &origin_of_all(robots))));
@@ -181,7 +184,8 @@ pub fn generate_families(
     let chosen = parsed.iter().map(select).collect::<Result<Vec<_>, _>>()?;
     let mut files = for_each_gait(&parsed, |robot, gait, origin| {
         let family = Family::new(&robot.spec, gait, select(robot)?)?;
-        let source = emit::family_source(&family, &robot.files.module, runtime, origin)?;
+        let latex = latex(&robot.spec, gait, &family.mechanism);
+        let source = emit::family_source(&family, &robot.files.module, &latex, runtime, origin)?;
         Ok((emit::family_file_name(&robot.files.module, &gait.name), source))
     })?;
     let registry = emit::families_source(&modules(&parsed), &chosen, runtime, &origin_of_all(robots));

@@ -15,5 +15,6 @@ pub mod expr;
 pub mod mechanism;
 pub mod program;
 pub mod spec;
+pub mod typeset;
 
 pub use config::{Config, Generated, RobotFiles, SpecFile, generate, generate_families};

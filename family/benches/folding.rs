@@ -12,7 +12,7 @@ use std::hint::black_box;
 
 fn folding(c: &mut Criterion) {
     for (folded, family) in GAITS.iter().filter_map(|g| {
-        let same = FAMILIES.iter().find(|f| f.description.gait == g.description().gait)?;
+        let same = FAMILIES.iter().find(|f| f.description.key == g.description().key)?;
         Some((*g, same))
     }) {
         let Ok(member) = family.with(&[]) else { continue };

@@ -6,7 +6,7 @@
 //! use piaffe_family::FAMILIES;
 //!
 //! # fn main() -> Result<(), piaffe::model::family::Unfit> {
-//! let trot = FAMILIES.iter().find(|f| f.description.gait == "trot").expect("a trot in model-spec");
+//! let trot = FAMILIES.iter().find(|f| f.description.key == "trot").expect("a trot in model-spec");
 //! let heavy = trot.with(&[("links.thigh.mass", 2.0), ("links.shin.length", 0.16)])?;
 //! assert_eq!(heavy.parameters()[0], 9.81); // gravity, m/s²
 //! // From here on it is a gait like any other.

@@ -13,7 +13,7 @@ const SPEED: f64 = 0.6;
 
 #[test]
 fn random_robots_trot_or_say_why_not() {
-    let family = FAMILIES.iter().find(|f| f.description.gait == "trot").unwrap();
+    let family = FAMILIES.iter().find(|f| f.description.key == "trot").unwrap();
     let settings = Settings::default();
     for criterion in Criterion::ALL {
         let mut rng = fastrand::Rng::with_seed(1);

@@ -4,6 +4,7 @@ mod dynamics;
 mod input;
 mod journal;
 mod main_job;
+mod model;
 mod optimize;
 mod output;
 mod summary;
@@ -49,6 +50,18 @@ enum Command {
         /// JSON: {"states": [{"X": […], "Xdot": […], "Xddot": […], "Gamma": […]}]}; `-` reads standard input.
         #[arg(default_value = "-", value_name = "FILE|-")]
         file: String,
+    },
+    /// Show what was generated for a gait: coordinates, virtual legs, masses, kernels; or its equations.
+    #[command(after_help = "Example:\n  piaffe model trot --latex > trot.tex && pdflatex trot.tex")]
+    Model {
+        #[arg(value_parser = gait_names())]
+        gait: String,
+        /// The closed forms with the names of the robot's parameters, as a LaTeX document.
+        #[arg(long, conflicts_with = "json")]
+        latex: bool,
+        /// Write what was generated as JSON; `-` is standard output.
+        #[arg(long, value_name = "FILE|-")]
+        json: Option<String>,
     },
     /// Find the optimal periodic motion of a gait at a mean speed.
     #[command(after_help = "Example:\n  piaffe optimize trot --criterion energy --speed 0.6 --json trot.json")]
@@ -105,6 +118,7 @@ pub fn run() -> ExitCode {
     let outcome = match arguments.command {
         None => main_job::run(&arguments.out),
         Some(Command::Dynamics { gait, file }) => dynamics::run(by_name(&gait), &file),
+        Some(Command::Model { gait, latex, json }) => model::run(by_name(&gait), latex, json.as_deref()),
         Some(Command::Optimize { gait, criterion, speed, seed, starts, json }) => {
             let settings = piaffe::search::multi_start::Settings { starts: starts as usize, seed };
             optimize::run(by_name(&gait), criterion_by_name(&criterion), speed, &settings, json.as_deref())

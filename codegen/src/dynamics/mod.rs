@@ -4,6 +4,7 @@
 //! (eq. 6, 8–10), `impact` the passive impacts (eq. 11, 12), `staging` what of eq. 8 and 9 can be
 //! evaluated before β is known. All follow Kane's form `Σ m ∂v/∂Ẋ·a + ∂ω/∂Ẋ·(Iω̇ + ω×Iω)`.
 
+mod closed_forms;
 mod curvature;
 mod floating;
 mod impact;
@@ -17,6 +18,7 @@ mod solve;
 mod staging;
 mod stance;
 
+pub use closed_forms::{Equation, Section, closed_forms};
 pub use kernel::{Input, Kernel, Output, Shape};
 pub use lumps::{LUMPS, PARAMETERS};
 pub use model::Model;

@@ -62,7 +62,9 @@ pub fn description(m: &Mechanism, key: &str, functions: &[Function], runtime: &T
     let operations = functions.iter().map(|f| {
         let (name, o) = (&f.kernel.name, f.program.operations());
         let (flops, divisions, sincos) = (o.flops, o.divisions, o.sincos);
-        quote!(#runtime::Operations { kernel: #name, flops: #flops, divisions: #divisions, sincos: #sincos })
+        let (derived, bytes) = (f.derived.flops, f.bytes());
+        quote!(#runtime::Operations { kernel: #name, flops: #flops, divisions: #divisions, sincos: #sincos,
+            derived: #derived, bytes: #bytes })
     });
     let (gait, robot) = (&m.gait, &m.robot);
     let (gravity, lateral, order) = (float(m.gravity), m.lateral, m.polynomial_order);

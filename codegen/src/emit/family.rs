@@ -14,7 +14,7 @@ use quote::quote;
 ///
 /// # Errors
 /// If what was generated is not Rust: a defect of the generator.
-pub fn family_source(family: &Family, robot: &str, runtime: &str, origin: &str) -> Result<String, String> {
+pub fn family_source(family: &Family, robot: &str, latex: &str, runtime: &str, origin: &str) -> Result<String, String> {
     let (model, kernels) = family_kernels(family);
     let gait: Vec<Function> = kernels.gait.iter().map(|k| Function::new(&model.ring, k)).collect();
     let sensitivity: Vec<Function> = kernels.sensitivity.iter().map(|k| Function::new(&model.ring, k)).collect();
@@ -45,6 +45,7 @@ pub fn family_source(family: &Family, robot: &str, runtime: &str, origin: &str) 
         pub static PARAMETERS: &[#runtime::family::Parameter; #parameter_count] = &super::PARAMETERS;
         impl #runtime::Gait for #name {
             fn description(&self) -> &#runtime::Description { &self.description }
+            fn latex(&self) -> &'static str { #latex }
             #of_gait
         }
         impl #runtime::family::Parametric for #name {

@@ -3,7 +3,7 @@
 use super::type_name;
 use crate::dynamics::{Kernel, Output, Shape};
 use crate::expr::{Kind, Ring};
-use crate::program::{Id, Node, Program, Sum, Term};
+use crate::program::{Id, Node, Operations, Program, Sum, Term};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
 use std::collections::{BTreeMap, BTreeSet};
@@ -17,6 +17,8 @@ pub struct Function<'a> {
     pub ring: &'a Ring,
     pub kernel: &'a Kernel,
     pub program: Program,
+    /// What it would cost as derived, without factoring.
+    pub derived: Operations,
 }
 
 /// `inverse_jacobian2` → (`inverse_jacobian`, true): leg kernels end in the leg's number.
@@ -36,7 +38,12 @@ fn float(value: f64) -> TokenStream {
 
 impl Function<'_> {
     pub fn new<'a>(ring: &'a Ring, kernel: &'a Kernel) -> Function<'a> {
-        Function { ring, kernel, program: Program::new(ring, kernel) }
+        Function {
+            ring,
+            kernel,
+            program: Program::new(ring, kernel),
+            derived: Program::as_derived(ring, kernel).operations(),
+        }
     }
 
     /// The type returned: a struct where there are several outputs.
@@ -97,6 +104,11 @@ impl Function<'_> {
             #[inline]
             pub fn #name(#(#inputs),*) -> #returns { #body }
         }
+    }
+
+    /// Length of its source.
+    pub fn bytes(&self) -> usize {
+        syn::parse2(self.source()).map_or(0, |file| prettyplease::unparse(&file).len())
     }
 
     /// Names of the nodes that are inputs.

@@ -10,17 +10,23 @@ use proc_macro2::TokenStream;
 use quote::quote;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Source of one gait's module, of a robot with or without a module of its own. `runtime` is the path of the
-/// module with the `Gait` trait; without it there are functions only.
+/// Source of one gait's module, of a robot with or without a module of its own. `latex` are its
+/// closed forms, `runtime` is the path of the module with the `Gait` trait; without it there are functions only.
 ///
 /// # Errors
 /// If what was generated is not Rust: a defect of the generator.
-pub fn gait_source(mechanism: &Mechanism, robot: &str, runtime: Option<&str>, origin: &str) -> Result<String, String> {
+pub fn gait_source(
+    mechanism: &Mechanism,
+    robot: &str,
+    latex: &str,
+    runtime: Option<&str>,
+    origin: &str,
+) -> Result<String, String> {
     let (model, kernels) = kernels(mechanism);
     let functions: Vec<Function> = kernels.iter().map(|k| Function::new(&model.ring, k)).collect();
     let items = items(&functions);
     let gait = match runtime {
-        Some(runtime) => implementation(mechanism, &key(robot, &mechanism.gait), &functions, runtime)?,
+        Some(runtime) => implementation(mechanism, &key(robot, &mechanism.gait), &functions, latex, runtime)?,
         None => TokenStream::new(),
     };
     let file = quote! {
@@ -56,7 +62,13 @@ pub(super) fn written(file: TokenStream, origin: &str) -> Result<String, String>
 }
 
 /// The gait's type with its description and its `impl Gait`.
-fn implementation(m: &Mechanism, key: &str, functions: &[Function], runtime: &str) -> Result<TokenStream, String> {
+fn implementation(
+    m: &Mechanism,
+    key: &str,
+    functions: &[Function],
+    latex: &str,
+    runtime: &str,
+) -> Result<TokenStream, String> {
     let runtime = path(runtime)?;
     let name = ident(&type_name(&m.gait));
     let doc = format!(" The {} of `{}`.", m.gait, m.robot);
@@ -70,6 +82,7 @@ fn implementation(m: &Mechanism, key: &str, functions: &[Function], runtime: &st
         pub static DESCRIPTION: #runtime::Description = #description;
         impl #runtime::Gait for #name {
             fn description(&self) -> &#runtime::Description { &DESCRIPTION }
+            fn latex(&self) -> &'static str { #latex }
             #methods
         }
     })

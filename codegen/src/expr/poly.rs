@@ -144,6 +144,26 @@ impl Poly {
         self.len() == other.len() && self.terms().zip(other.terms()).all(|((m, c), (n, d))| m == n && close(c, d))
     }
 
+    /// The factors that all terms share, and what is left without them.
+    pub fn common_factors(&self) -> (Monomial, Poly) {
+        let Some(mut shared) = self.terms.keys().next().cloned() else { return (Monomial::new(), Poly::zero()) };
+        for monomial in self.terms.keys() {
+            let mut rest = monomial.clone();
+            shared.retain(|factor| rest.iter().position(|r| r == factor).map(|at| rest.remove(at)).is_some());
+        }
+        let without = |monomial: &Monomial| {
+            let mut rest = monomial.clone();
+            for factor in &shared {
+                if let Some(at) = rest.iter().position(|r| r == factor) {
+                    rest.remove(at);
+                }
+            }
+            rest
+        };
+        let rest = Poly { terms: self.terms.iter().map(|(m, c)| (without(m), *c)).collect() };
+        (shared, rest)
+    }
+
     pub fn contains(&self, var: Var) -> bool {
         self.terms.keys().any(|m| m.contains(&var))
     }

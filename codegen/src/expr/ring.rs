@@ -327,6 +327,15 @@ impl Ring {
         self.staged(p, |v| !self.fixed.contains(&v))
     }
 
+    /// The sine for a cosine and the cosine for a sine, of the same angle.
+    pub fn conjugate(&self, atom: Var) -> Option<Var> {
+        match (atom.is_sin(), atom.is_cos()) {
+            (true, _) => Some(Var::cos(atom.index())),
+            (_, true) => Some(Var::sin(atom.index())),
+            _ => None,
+        }
+    }
+
     /// Numeric value, for tests: `values` gives the symbols.
     pub fn evaluate(&self, p: &Poly, values: &BTreeMap<Var, f64>) -> f64 {
         self.value(p, &mut values.clone())

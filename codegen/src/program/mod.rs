@@ -102,6 +102,11 @@ impl Program {
         best.map_or(lowered, |(_, program)| program)
     }
 
+    /// Lowers a kernel as it was derived: what is factored from it is measured against this.
+    pub fn as_derived(ring: &Ring, kernel: &Kernel) -> Program {
+        lower::lower(ring, kernel)
+    }
+
     /// Nodes in an order in which each comes after all that it needs; unused ones are left out.
     pub fn schedule(&self) -> Vec<Id> {
         let mut order = Vec::new();

@@ -38,7 +38,7 @@ fn early<'k>(name: &str, inputs: &'k BTreeMap<String, Vec<f64>>) -> Option<&'k V
 #[test]
 fn members_compute_what_is_derived_for_their_numbers() {
     for family in FAMILIES {
-        let (robot, gait) = specification(family.description.gait);
+        let (robot, gait) = specification(family.description.key);
         let mut rng = fastrand::Rng::with_seed(11);
         for _ in 0..3 {
             let robot_member = member(family, &GENERAL, &mut rng);
@@ -75,7 +75,7 @@ fn members_compute_what_is_derived_for_their_numbers() {
 #[test]
 fn sensitivities_compute_what_was_derived() {
     for family in FAMILIES {
-        let (robot, gait) = specification(family.description.gait);
+        let (robot, gait) = specification(family.description.key);
         let (model, derived) = family_kernels(&Family::new(&robot, &gait, parameters(&robot)).unwrap());
         let mut rng = fastrand::Rng::with_seed(12);
         let robot_member = member(family, &GENERAL, &mut rng);
@@ -98,9 +98,9 @@ fn sensitivities_compute_what_was_derived() {
 #[test]
 fn the_specified_robot_is_a_member() {
     for (family, folded) in FAMILIES.iter().flat_map(|f| {
-        piaffe::gaits::GAITS.iter().filter(|g| g.description().gait == f.description.gait).map(move |g| (f, g))
+        piaffe::gaits::GAITS.iter().filter(|g| g.description().key == f.description.key).map(move |g| (f, g))
     }) {
-        let (robot, _) = specification(family.description.gait);
+        let (robot, _) = specification(family.description.key);
         let known: Vec<_> = parameters(&robot).into_iter().map(|p| (p.name, p.unit, p.value)).collect();
         let own: Vec<_> = family.parameters.iter().map(|p| (p.name.to_string(), p.unit, p.value)).collect();
         assert_eq!(own, known);

@@ -4,7 +4,7 @@ use piaffe::model::family::Family;
 use piaffe_family::FAMILIES;
 
 fn trot() -> &'static Family {
-    FAMILIES.iter().find(|f| f.description.gait == "trot").unwrap()
+    FAMILIES.iter().find(|f| f.description.key == "trot").unwrap()
 }
 
 fn refusal(changes: &[(&str, f64)]) -> String {
