@@ -2,14 +2,18 @@
 
 use super::terms::{Term, gathered};
 use crate::dynamics::{Model, closed_forms};
-use crate::expr::{Kind, Poly, Var};
+use crate::expr::{Kind, Monomial, Poly, Var};
 use crate::mechanism::{Family, Mechanism, Parameter, parameters};
 use crate::spec::{Gait, Robot};
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// Width of a line of an equation, in characters as set.
 const WIDTH: usize = 90;
+
+/// Sums of parameters with more terms than this get a name.
+const LONG: usize = 2;
 
 /// Symbols and angles as they are written.
 pub struct Notation<'m> {
@@ -17,6 +21,8 @@ pub struct Notation<'m> {
     symbols: BTreeMap<Var, String>,
     /// Coordinates whose sum is φ₁, φ₂, …
     angles: Vec<Vec<Var>>,
+    /// What k₁, k₂, … stand for: long sums of parameters.
+    lumps: RefCell<Vec<Poly>>,
 }
 
 /// The document of one gait. Where the numbers of its `mechanism` are no sums of the robot's, they stand there as
@@ -37,14 +43,23 @@ pub fn latex(robot: &Robot, gait: &Gait, mechanism: &Mechanism) -> String {
         escaped(&gait.name),
         escaped(&robot.name)
     );
-    notation.preface(&mut text, &chosen);
+    let mut body = String::new();
     for section in &sections {
-        let _ = write!(text, "\\subsection*{{{}}}\n\\begin{{align*}}\n", section.title);
-        let equations = section.equations.iter().map(|e| notation.equation(&e.left, &e.right));
-        text += &equations.collect::<Vec<_>>().join(" \\\\\n");
-        text += "\n\\end{align*}\n";
+        let equations: Vec<String> = section.equations.iter().map(|e| notation.equation(&e.left, &e.right)).collect();
+        body += &aligned(&section.title, &equations);
     }
+    notation.preface(&mut text, &chosen);
+    let lumps = notation.lumps.borrow();
+    let named: Vec<String> = lumps.iter().enumerate().map(|(k, p)| notation.definition(k, p)).collect();
+    if !named.is_empty() {
+        text += &aligned("Sums of parameters", &named);
+    }
+    text += &body;
     text + "\\end{document}\n"
+}
+
+fn aligned(title: &str, equations: &[String]) -> String {
+    format!("\\subsection*{{{title}}}\n\\begin{{align*}}\n{}\n\\end{{align*}}\n", equations.join(" \\\\\n"))
 }
 
 impl<'m> Notation<'m> {
@@ -70,7 +85,7 @@ impl<'m> Notation<'m> {
         }
         angles.sort();
         angles.dedup();
-        Notation { model, symbols, angles }
+        Notation { model, symbols, angles, lumps: RefCell::default() }
     }
 
     /// What the symbols mean.
@@ -106,28 +121,21 @@ impl<'m> Notation<'m> {
     }
 
     fn equation(&self, left: &str, right: &Poly) -> String {
-        let mut text = format!("{left} &=");
-        let mut width = 0;
         let terms = gathered(&self.model.ring, right);
-        for (k, term) in terms.iter().enumerate() {
-            let mut term = self.term(term, terms.len() == 1);
-            if k > 0 && !term.starts_with('-') {
-                term.insert_str(0, "+ ");
-            }
-            let wide = shown(&term);
-            if width > 0 && width + wide > WIDTH {
-                text.push_str(" \\\\\n&\\quad {}");
-                width = 0;
-            }
-            width += wide;
-            text.push(' ');
-            text.push_str(&term);
-        }
-        text
+        lines(left, terms.iter().map(|term| self.term(term)))
     }
 
-    /// `coefficient · what moves`, and whether it is the only one.
-    fn term(&self, term: &Term, only: bool) -> String {
+    fn definition(&self, k: usize, lump: &Poly) -> String {
+        let one = |(monomial, c): (&Monomial, f64)| {
+            let mut term = Poly::zero();
+            term.add_term(monomial.clone(), c);
+            self.sum(&term)
+        };
+        lines(&format!("k_{{{}}}", k + 1), lump.terms().map(one))
+    }
+
+    /// `coefficient · what moves`.
+    fn term(&self, term: &Term) -> String {
         let moving: Vec<String> = powers(&term.monomial, |v| self.atom(v))
             .into_iter()
             .chain(term.waves.iter().map(|w| self.wave(w)))
@@ -135,7 +143,6 @@ impl<'m> Notation<'m> {
         let moving = moving.join(" ");
         match term.coefficient.as_constant() {
             Some(c) if c.abs() == 1.0 && !moving.is_empty() => format!("{}{moving}", if c < 0.0 { "- " } else { "" }),
-            _ if moving.is_empty() && only && !self.is_mass(&term.coefficient) => self.sum(&term.coefficient),
             _ if moving.is_empty() => self.factored(&term.coefficient),
             _ => format!("{}\\, {moving}", self.factored(&term.coefficient)),
         }
@@ -156,8 +163,23 @@ impl<'m> Notation<'m> {
             factors.insert(0, format!("{}\\,", number(scale.abs())));
         }
         let rest = rest.scaled(1.0 / scale);
-        factors.push(if self.is_mass(&rest) { "M".into() } else { format!("\\left({}\\right)", self.sum(&rest)) });
+        factors.push(match rest.len() {
+            _ if self.is_mass(&rest) => "M".into(),
+            ..=LONG => format!("\\left({}\\right)", self.sum(&rest)),
+            _ => self.lump(rest),
+        });
         format!("{}{}", if scale < 0.0 { "- " } else { "" }, factors.join(" "))
+    }
+
+    /// The name of a sum of parameters.
+    fn lump(&self, p: Poly) -> String {
+        let mut lumps = self.lumps.borrow_mut();
+        let known = lumps.iter().position(|l| l.is_close_to(&p));
+        let number = known.unwrap_or_else(|| {
+            lumps.push(p);
+            lumps.len() - 1
+        });
+        format!("k_{{{}}}", number + 1)
     }
 
     fn is_mass(&self, p: &Poly) -> bool {
@@ -228,6 +250,26 @@ impl<'m> Notation<'m> {
             Some(format!("{accent}\\varphi_{{{}}}", k + 1))
         })
     }
+}
+
+/// An equation from the terms of its right-hand side, with a new line where one is full.
+fn lines(left: &str, terms: impl Iterator<Item = String>) -> String {
+    let mut text = format!("{left} &=");
+    let mut width = 0;
+    for (k, mut term) in terms.enumerate() {
+        if k > 0 && !term.starts_with('-') {
+            term.insert_str(0, "+ ");
+        }
+        let wide = shown(&term);
+        if width > 0 && width + wide > WIDTH {
+            text.push_str(" \\\\\n&\\quad {}");
+            width = 0;
+        }
+        width += wide;
+        text.push(' ');
+        text.push_str(&term);
+    }
+    text
 }
 
 /// Factors with their exponents.
