@@ -156,14 +156,20 @@ impl<'m> Notation<'m> {
         let (shared, rest) = p.common_factors();
         let least = rest.terms().map(|(_, c)| c.abs()).fold(f64::INFINITY, f64::min);
         let even = rest.terms().all(|(_, c)| (c / least).fract() == 0.0);
-        let sign = if rest.terms().all(|(_, c)| c < 0.0) { -1.0 } else { 1.0 };
+        // The first term is positive, so that a sum and its negative have one name.
+        let sign = rest.terms().next().map_or(1.0, |(_, c)| c.signum());
         let scale = if even { sign * least } else { sign };
         let mut factors = powers(&shared, |v| self.atom(v));
         if scale.abs() != 1.0 {
             factors.insert(0, format!("{}\\,", number(scale.abs())));
         }
         let rest = rest.scaled(1.0 / scale);
+        let over_mass = factors.iter().position(|factor| factor == "M^{-1}").filter(|_| self.is_mass(&rest));
+        if let Some(k) = over_mass {
+            factors.remove(k);
+        }
         factors.push(match rest.len() {
+            _ if over_mass.is_some() => String::new(),
             _ if self.is_mass(&rest) => "M".into(),
             ..=LONG => format!("\\left({}\\right)", self.sum(&rest)),
             _ => self.lump(rest),
