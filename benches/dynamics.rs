@@ -1,7 +1,7 @@
 //! Generated kernels beside the same quantities by numeric recursion over the bodies.
 
-use criterion::{Criterion, criterion_group, criterion_main};
-use piaffe::gaits::GAITS;
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use piaffe::gaits::{GAITS, amble, curvet, trot};
 use piaffe::verify::multibody::Multibody;
 use std::hint::black_box;
 
@@ -36,5 +36,27 @@ fn dynamics(c: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, dynamics);
+/// A + H of many states at once: the time is that of all of them, the throughput says states per second.
+macro_rules! batch {
+    ($c:expr, $gait:ident) => {{
+        const LANES: usize = 8;
+        let lanes = |k: usize| std::array::from_fn(|lane| 0.3 - 0.2 * k as f64 + 0.05 * lane as f64);
+        let (q, qd): ([[f64; LANES]; _], [[f64; LANES]; _]) = (std::array::from_fn(lanes), std::array::from_fn(lanes));
+        let mut out = $gait::InertiaAndBias { a: [[[0.0; LANES]; _]; _], h: [[0.0; LANES]; _] };
+        let mut group = $c.benchmark_group(concat!("dynamics/", stringify!($gait)));
+        group.throughput(Throughput::Elements(LANES as u64));
+        group.bench_function("A + H, generated, batch of 8", |b| {
+            b.iter(|| $gait::inertia_and_bias_batch(black_box(&q), black_box(&qd), black_box(&mut out)));
+        });
+        group.finish();
+    }};
+}
+
+fn batches(c: &mut Criterion) {
+    batch!(c, trot);
+    batch!(c, amble);
+    batch!(c, curvet);
+}
+
+criterion_group!(benches, dynamics, batches);
 criterion_main!(benches);

@@ -1,3 +1,11 @@
+/// Sines and cosines of many angles: lane by lane the bits of [`sin_cos`].
+#[inline]
+pub fn sin_cos_batch<const N: usize>(x: &[f64; N], sin: &mut [f64; N], cos: &mut [f64; N]) {
+    for lane in 0..N {
+        (sin[lane], cos[lane]) = sin_cos(x[lane]);
+    }
+}
+
 /// Sine and cosine of `x` (rad): one pinned, branch-free implementation, so that results are the
 /// same bits on every machine. Largest error found by `tests/math.rs`: 0.78 ulp for |x| ≤ 1e5, 0.51
 /// within a few numbers of a multiple of π/2. NaN for non-finite arguments.

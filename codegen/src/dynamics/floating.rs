@@ -32,7 +32,8 @@ pub fn kernels(model: &mut Model) -> Vec<Kernel> {
             .input("q", q.clone())
             .input("qd", model.q(1))
             .matrix("a", inertia, "A")
-            .vector("h", bias, "H"),
+            .vector("h", bias, "H")
+            .batched(),
         energy(model).input("x", x.clone()).input("xd", xd.clone()),
     ];
     let com = model.centre_of_mass(Origin::World);

@@ -10,6 +10,8 @@ pub struct Kernel {
     pub doc: String,
     pub inputs: Vec<Input>,
     pub outputs: Vec<Output>,
+    /// Whether it is also wanted for many states at once.
+    pub batched: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -38,7 +40,11 @@ pub enum Shape {
 
 impl Kernel {
     pub fn new(name: impl Into<String>, doc: impl Into<String>) -> Kernel {
-        Kernel { name: name.into(), doc: doc.into(), inputs: Vec::new(), outputs: Vec::new() }
+        Kernel { name: name.into(), doc: doc.into(), inputs: Vec::new(), outputs: Vec::new(), batched: false }
+    }
+
+    pub fn batched(self) -> Kernel {
+        Kernel { batched: true, ..self }
     }
 
     pub fn input(mut self, name: &'static str, symbols: Vec<Var>) -> Kernel {

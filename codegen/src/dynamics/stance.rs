@@ -240,6 +240,7 @@ fn inverse(model: &mut Model, stance: &Stance, leg: usize, platform: &[Poly]) ->
     .vector("xdd", xdd, "Ẍ")
     .vector("gamma", torques, "torque of every joint, N·m")
     .vector("f", reaction, "reaction at the stance foot, N")
+    .batched()
 }
 
 /// What the optimizer evaluates at every instant: outputs and Jacobian, β̈ treated as independent.

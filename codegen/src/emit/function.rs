@@ -1,6 +1,6 @@
 //! One kernel as one function.
 
-use super::type_name;
+use super::{batch, type_name};
 use crate::dynamics::{Kernel, Output, Shape};
 use crate::expr::{Kind, Ring};
 use crate::program::{Id, Node, Operations, Program, Sum, Term};
@@ -49,7 +49,7 @@ impl Function<'_> {
     /// The type returned: a struct where there are several outputs.
     pub fn return_type(&self) -> TokenStream {
         match self.kernel.outputs.as_slice() {
-            [one] => shape_type(one.shape),
+            [one] => shape_type(one.shape, &quote!(f64)),
             _ => {
                 let name = ident(&self.struct_name());
                 quote!(#name)
@@ -57,7 +57,7 @@ impl Function<'_> {
         }
     }
 
-    fn struct_name(&self) -> String {
+    pub fn struct_name(&self) -> String {
         type_name(base_name(&self.kernel.name).0)
     }
 
@@ -69,7 +69,7 @@ impl Function<'_> {
         let name = ident(&self.struct_name());
         let doc = format!(" Result of [`{}`] and, where there is one, its twin for the other leg.", self.kernel.name);
         let fields = self.kernel.outputs.iter().map(|o| {
-            let (field, ty, doc) = (ident(o.name), shape_type(o.shape), format!(" {}", o.doc));
+            let (field, ty, doc) = (ident(o.name), shape_type(o.shape, &quote!(T)), format!(" {}", o.doc));
             quote!(#[doc = #doc] pub #field: #ty,)
         });
         Some((
@@ -77,7 +77,7 @@ impl Function<'_> {
             quote! {
                 #[doc = #doc]
                 #[derive(Clone, Copy, Debug, PartialEq)]
-                pub struct #name { #(#fields)* }
+                pub struct #name<T = f64> { #(#fields)* }
             },
         ))
     }
@@ -97,12 +97,17 @@ impl Function<'_> {
         });
         let returns = self.return_type();
         let body = self.body();
+        let batched = self.kernel.batched && self.kernel.outputs.len() > 1;
+        // The loop over lanes vectorizes only if the kernel is part of it.
+        let inline = if batched { quote!(#[inline(always)]) } else { quote!(#[inline]) };
+        let batch = batched.then(|| batch::source(self));
         quote! {
             #[doc = #doc]
             #[doc = ""]
             #[doc = #counts]
-            #[inline]
+            #inline
             pub fn #name(#(#inputs),*) -> #returns { #body }
+            #batch
         }
     }
 
@@ -310,16 +315,17 @@ impl Function<'_> {
     }
 }
 
-fn shape_type(shape: Shape) -> TokenStream {
+/// An array type for a shape, of numbers or of lanes.
+pub fn shape_type(shape: Shape, number: &TokenStream) -> TokenStream {
     match shape {
-        Shape::Scalar => quote!(f64),
+        Shape::Scalar => number.clone(),
         Shape::Vector(n) => {
             let n = Literal::usize_unsuffixed(n);
-            quote!([f64; #n])
+            quote!([#number; #n])
         }
         Shape::Matrix(r, c) => {
             let (r, c) = (Literal::usize_unsuffixed(r), Literal::usize_unsuffixed(c));
-            quote!([[f64; #c]; #r])
+            quote!([[#number; #c]; #r])
         }
     }
 }

@@ -4,6 +4,7 @@
 //! branch. Long ones are cut into nested blocks, because rustc's debug information does not survive
 //! thousands of bindings in one scope.
 
+mod batch;
 mod description;
 mod family;
 mod function;
