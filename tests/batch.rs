@@ -1,6 +1,6 @@
 //! Kernels over many states at once give, lane by lane, the bits of the single state.
 
-use piaffe::gaits::{amble, curvet, math, trot};
+use piaffe::gaits::{amble, curvet, trot};
 use std::array::from_fn;
 
 /// Lanes for every number, drawn from (−size, size).
@@ -48,20 +48,5 @@ fn batches_have_the_bits_of_single_states() {
         same_bits!(amble, 8, random);
         same_bits!(trot, 3, random);
         same_bits!(amble, 1, random);
-    }
-}
-
-#[test]
-fn many_angles_at_once() {
-    let random = &mut fastrand::Rng::with_seed(8);
-    for size in [1.0, 100.0, 1e5] {
-        let [x] = draw::<64, 1>(random, size);
-        let (mut sin, mut cos) = ([0.0; 64], [0.0; 64]);
-        math::sin_cos_batch(&x, &mut sin, &mut cos);
-        for i in 0..64 {
-            let (s, c) = math::sin_cos(x[i]);
-            assert_eq!((s.to_bits(), c.to_bits()), (sin[i].to_bits(), cos[i].to_bits()));
-            assert!((s - x[i].sin()).abs() < 1e-15 && (c - x[i].cos()).abs() < 1e-15);
-        }
     }
 }

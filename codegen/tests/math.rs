@@ -152,3 +152,16 @@ fn pinned_bits() {
 }
 
 const PINNED: &str = "e9af38cf2dfa15db";
+
+/// Many angles at once have, lane by lane, the bits of one.
+#[test]
+fn lanes_are_single_angles() {
+    let x: [f64; 64] = std::array::from_fn(|i| (i as f64 - 31.5).powi(3));
+    let (mut sin, mut cos) = ([0.0; 64], [0.0; 64]);
+    math::sin_cos_batch(&x, &mut sin, &mut cos);
+    for i in 0..64 {
+        let (s, c) = math::sin_cos(x[i]);
+        assert_eq!((s.to_bits(), c.to_bits()), (sin[i].to_bits(), cos[i].to_bits()));
+        assert!((s - x[i].sin()).abs() < 1e-15 && (c - x[i].cos()).abs() < 1e-15);
+    }
+}
