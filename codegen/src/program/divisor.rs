@@ -115,7 +115,9 @@ impl Item {
                     continue;
                 }
                 let key = mix(hash_of_node(*a).wrapping_add(hash_of_node(*b)) ^ 1);
-                found(Offer { key, cost: [1; 2], saved: [1; 2], source: Source::Product(*a, *b) });
+                let count = |id: &Id| f.iter().filter(|other| *other == id).count() as i32;
+                let times = if a == b { count(a) / 2 } else { count(a).min(count(b)) };
+                found(Offer { key, cost: [1; 2], saved: [times; 2], source: Source::Product(*a, *b) });
             }
         }
     }

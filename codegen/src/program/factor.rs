@@ -122,6 +122,7 @@ impl Search<'_> {
     fn scale(&self, divisor: &Divisor, found: &[Rewrite]) -> (f64, i32) {
         let Divisor::Pair { first, second, ratio } = divisor else { return (1.0, self.gain(divisor, found, 1.0)) };
         let mut scales = vec![1.0, 1.0 / ratio.abs()];
+        // Equal coefficients are factored out in any case.
         if exact(*ratio).abs() != 1.0 && (first.len() == 1 || second.len() == 1) {
             scales.extend(found.iter().map(|r| r.coefficient.abs()));
             scales.dedup_by_key(|scale| rounded(*scale));
