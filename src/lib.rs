@@ -6,6 +6,7 @@ pub mod altered;
 pub mod constraints;
 pub mod cost;
 pub mod cycle;
+pub mod import;
 pub mod instant;
 mod lgl;
 pub mod model;

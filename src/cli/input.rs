@@ -1,18 +1,23 @@
-//! JSON from a file or standard input, with errors that say where.
+//! Text and JSON from a file or standard input, with errors that say where.
 
 use anyhow::{Context, bail};
 use serde::de::DeserializeOwned;
 use std::io::Read;
 
+/// The text of `file`, or of standard input for `-`.
+pub fn read_text(file: &str) -> anyhow::Result<String> {
+    if file != "-" {
+        return std::fs::read_to_string(file).with_context(|| format!("cannot read {file}"));
+    }
+    let mut text = String::new();
+    std::io::stdin().read_to_string(&mut text).context("cannot read standard input as UTF-8 text")?;
+    Ok(text)
+}
+
 /// Reads and parses `file`, or standard input for `-`.
 pub fn read_json<T: DeserializeOwned>(file: &str) -> anyhow::Result<T> {
     let name = if file == "-" { "standard input" } else { file };
-    let mut text = String::new();
-    if file == "-" {
-        std::io::stdin().read_to_string(&mut text).context("cannot read standard input as UTF-8 text")?;
-    } else {
-        text = std::fs::read_to_string(file).with_context(|| format!("cannot read {file}"))?;
-    }
+    let text = read_text(file)?;
     if text.trim().is_empty() {
         bail!("{name} is empty: JSON was expected");
     }

@@ -1,6 +1,7 @@
 //! `piaffe`: what a person types, and what comes back.
 
 mod dynamics;
+mod import;
 mod input;
 mod journal;
 mod main_job;
@@ -63,6 +64,21 @@ enum Command {
         #[arg(long, value_name = "FILE|-")]
         json: Option<String>,
     },
+    /// Write a specification from a URDF: robot.toml and a gait to begin with.
+    ///
+    /// Says what it took, what it assumed and what it dropped. Legs are chains of revolute joints.
+    #[command(after_help = "Example:\n  piaffe import a1.urdf --out model-spec/a1")]
+    Import {
+        /// The URDF; `-` reads standard input.
+        #[arg(value_name = "FILE|-")]
+        file: String,
+        /// Folder for the specification; model-spec/ with the robot's name if it is not given.
+        #[arg(long = "out", value_name = "DIR")]
+        folder: Option<PathBuf>,
+        /// Joint that is no part of a leg and is held still; may be given several times.
+        #[arg(long, value_name = "JOINT")]
+        lock: Vec<String>,
+    },
     /// Find the optimal periodic motion of a gait at a mean speed.
     #[command(after_help = "Example:\n  piaffe optimize trot --criterion energy --speed 0.6 --json trot.json")]
     Optimize {
@@ -119,6 +135,7 @@ pub fn run() -> ExitCode {
         None => main_job::run(&arguments.out),
         Some(Command::Dynamics { gait, file }) => dynamics::run(by_name(&gait), &file),
         Some(Command::Model { gait, latex, json }) => model::run(by_name(&gait), latex, json.as_deref()),
+        Some(Command::Import { file, folder, lock }) => import::run(&file, folder, lock),
         Some(Command::Optimize { gait, criterion, speed, seed, starts, json }) => {
             let settings = piaffe::search::multi_start::Settings { starts: starts as usize, seed };
             optimize::run(by_name(&gait), criterion_by_name(&criterion), speed, &settings, json.as_deref())

@@ -1,0 +1,3 @@
+//! The gaits of a robot of one's own.
+
+include!(concat!(env!("OUT_DIR"), "/gaits.rs"));

@@ -1,0 +1,176 @@
+//! URDF in: the specification made of it has the dynamics of the URDF's own numbers.
+
+use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
+use piaffe::import::{Import, ImportError, Options, import};
+use piaffe_codegen::dynamics::kernels;
+use piaffe_codegen::mechanism::Mechanism;
+use piaffe_codegen::spec::{Gait, Robot, parse_gait, parse_robot};
+use std::collections::BTreeMap;
+
+fn urdf() -> String {
+    std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/a1.urdf")).unwrap()
+}
+
+fn imported() -> Import {
+    import(&urdf(), &Options::default()).unwrap()
+}
+
+fn gait_of(made: &Import, text: &str) -> (Robot, Gait) {
+    let robot = parse_robot("robot.toml", &made.robot).unwrap_or_else(|e| panic!("{}", e[0]));
+    let gait = parse_gait("gait.toml", text, &robot).unwrap_or_else(|e| panic!("{}", e[0]));
+    (robot.robot.locked(&gait.locked).unwrap(), gait)
+}
+
+/// Values of a kernel from its expressions.
+fn run(mechanism: &Mechanism, name: &str, inputs: &[&[f64]]) -> Vec<f64> {
+    let (model, kernels) = kernels(mechanism);
+    let kernel = kernels.iter().find(|k| k.name == name).unwrap();
+    let symbols = kernel.inputs.iter().flat_map(|i| i.symbols.iter().copied());
+    let values: BTreeMap<_, _> = symbols.zip(inputs.iter().flat_map(|i| i.iter().copied())).collect();
+    model.ring.evaluate_all(kernel.outputs.iter().flat_map(|o| &o.values), &values)
+}
+
+fn isometry(p: &urdf_rs::Pose) -> Isometry3<f64> {
+    let ([x, y, z], [roll, pitch, yaw]) = (*p.xyz, *p.rpy);
+    Isometry3::from_parts(Translation3::new(x, y, z), UnitQuaternion::from_euler_angles(roll, pitch, yaw))
+}
+
+/// Frames of all links by URDF's own rules, in URDF's axes: joints at these angles, the root at `base`.
+fn frames(robot: &urdf_rs::Robot, base: Isometry3<f64>, angles: &BTreeMap<String, f64>) -> Vec<Isometry3<f64>> {
+    let mut frames: Vec<Option<Isometry3<f64>>> = vec![None; robot.links.len()];
+    let index = |name: &str| robot.links.iter().position(|l| l.name == name).unwrap();
+    frames[index("base")] = Some(base);
+    for _ in 0..robot.joints.len() {
+        for joint in &robot.joints {
+            if let Some(parent) = frames[index(&joint.parent.link)] {
+                let angle = angles.get(&joint.name).copied().unwrap_or(0.0);
+                let turn = UnitQuaternion::from_scaled_axis(Vector3::from(*joint.axis.xyz) * angle);
+                frames[index(&joint.child.link)] = Some(parent * isometry(&joint.origin) * turn);
+            }
+        }
+    }
+    frames.into_iter().map(Option::unwrap).collect()
+}
+
+/// Kinetic and potential energy of the links one by one; their motion by differences along `path`.
+fn energy(robot: &urdf_rs::Robot, path: impl Fn(f64) -> Vec<Isometry3<f64>>) -> [f64; 2] {
+    let h = 1e-5;
+    let (before, now, after) = (path(-h), path(0.0), path(h));
+    let mut sum = [0.0; 2];
+    for (k, link) in robot.links.iter().enumerate() {
+        let inertial = &link.inertial;
+        let (m, i) = (inertial.mass.value, &inertial.inertia);
+        let frame = |f: &Isometry3<f64>| f * isometry(&inertial.origin);
+        let (b, n, a) = (frame(&before[k]), frame(&now[k]), frame(&after[k]));
+        let velocity = (a.translation.vector - b.translation.vector) / (2.0 * h);
+        let spin = n.rotation.inverse() * ((a.rotation * b.rotation.inverse()).scaled_axis() / (2.0 * h));
+        let tensor = Matrix3::new(i.ixx, i.ixy, i.ixz, i.ixy, i.iyy, i.iyz, i.ixz, i.iyz, i.izz);
+        sum[0] += 0.5 * m * velocity.norm_squared() + 0.5 * spin.dot(&(tensor * spin));
+        sum[1] += 9.81 * m * n.translation.vector.z;
+    }
+    sum
+}
+
+/// A state of a gait of the A1 as a motion of its URDF. `legs` are those of the two virtual legs.
+fn compare(gait: &str, legs: [[&str; 2]; 2]) {
+    let made = imported();
+    let (robot, gait) = gait_of(&made, gait);
+    let m = Mechanism::new(&robot, &gait);
+    let (np, nq) = (m.positions(), m.orientations());
+    let draw = |k: usize| (k as f64 * 0.618_033_988_749_895).fract() - 0.5;
+    let x: Vec<f64> = (0..np + nq).map(|k| draw(k + 1)).collect();
+    let xd: Vec<f64> = (0..np + nq).map(|k| 4.0 * draw(k + 23)).collect();
+    let file = urdf_rs::read_from_string(&urdf()).unwrap();
+    // The platform with the hips, locked at zero: its mass centre is what p places.
+    let centre = Vector3::from(robot.platform.com);
+    let path = |t: f64| {
+        let x: Vec<f64> = x.iter().zip(&xd).map(|(x, xd)| x + t * xd).collect();
+        let mut angles = BTreeMap::new();
+        for (side, names) in legs.iter().enumerate() {
+            for leg in names {
+                for (depth, joint) in ["thigh", "calf"].iter().enumerate() {
+                    // URDF's axis is to the left, the specification's to the right.
+                    angles.insert(format!("{leg}_{joint}_joint"), -x[np + 2 * side + depth]);
+                }
+            }
+        }
+        let theta = if nq > 4 { x[np + 4] } else { 0.0 };
+        let (axis, p) = match np {
+            3 => (Vector3::x(), Vector3::new(x[0], x[1], x[2])),
+            _ => (-Vector3::y(), Vector3::new(x[0], x[1], centre.z)),
+        };
+        let to_urdf = |v: Vector3<f64>| Vector3::new(v.x, -v.z, v.y);
+        let turn = UnitQuaternion::from_scaled_axis(axis * theta);
+        let place = to_urdf(p) - turn * to_urdf(centre);
+        frames(&file, Isometry3::from_parts(Translation3::from(place), turn), &angles)
+    };
+    let expected = energy(&file, path);
+    let found = run(&m, "energy", &[&x, &xd]);
+    for (f, e) in found.iter().zip(expected) {
+        assert!((f - e).abs() < 1e-7 * e.abs().max(1.0), "{found:?} instead of {expected:?}");
+    }
+    let mass: f64 = file.links.iter().map(|l| l.inertial.mass.value).sum();
+    assert!((m.total_mass() - mass).abs() < 1e-9);
+}
+
+#[test]
+fn the_trot_has_the_energies_of_the_urdf() {
+    let trot = &imported().gaits[0].1.clone();
+    compare(trot, [["FL", "RR"], ["FR", "RL"]]);
+}
+
+/// Here the platform turns too, and in the amble out of the plane: products of inertia count.
+#[test]
+fn turning_gaits_have_the_energies_of_the_urdf() {
+    let trot = imported().gaits[0].1.clone();
+    let rest = |legs: &str, motion: &str| {
+        trot.replace(r#"[["FL", "RR"], ["FR", "RL"]]"#, legs)
+            .replace(r#"moves = ["x", "y"], rotates = "none""#, motion)
+            .replace("leg1.FL_thigh_joint", "platform")
+            .replace("mirrored", "distinct")
+    };
+    compare(
+        &rest(r#"[["RL", "RR"], ["FL", "FR"]]"#, r#"moves = ["x", "y"], rotates = "pitch""#),
+        [["RL", "RR"], ["FL", "FR"]],
+    );
+    compare(
+        &rest(r#"[["FR", "RR"], ["FL", "RL"]]"#, r#"moves = ["x", "y", "z"], rotates = "roll""#),
+        [["FR", "RR"], ["FL", "RL"]],
+    );
+}
+
+#[test]
+fn what_is_no_such_robot_is_refused_with_advice() {
+    let broken = |from: &str, to: &str| {
+        let text = urdf();
+        assert!(text.contains(from), "{from}");
+        import(&text.replacen(from, to, 1), &Options::default())
+    };
+    let revolute = r#"<joint name="FR_calf_joint" type="revolute">"#;
+    let kind = |kind: &str| broken(revolute, &revolute.replace("revolute", kind));
+    assert!(matches!(kind("prismatic"), Err(ImportError::NotRevolute { joint, .. }) if joint == "FR_calf_joint"));
+    assert!(kind("continuous").is_ok_and(|i| i.notes.iter().any(|n| n.contains("continuous"))));
+    assert!(kind("fixed").is_ok(), "a leg may have fewer joints");
+    assert!(matches!(broken(r#"<axis xyz="0 1 0"/>"#, r#"<axis xyz="0 1 1"/>"#), Err(ImportError::ObliqueAxis { .. })));
+    assert!(matches!(broken(r#"effort="33.5""#, r#"effort="0""#), Err(ImportError::NoLimit { what: "effort", .. })));
+    assert!(matches!(
+        broken(r#"<child link="FR_foot"/>"#, r#"<child link="foot"/>"#),
+        Err(ImportError::NoSuchLink { .. })
+    ));
+    assert!(matches!(
+        broken(r#"<parent link="FR_hip"/>"#, r#"<parent link="FR_foot"/>"#),
+        Err(ImportError::NotATree(_))
+    ));
+    assert!(matches!(
+        broken(r#"<parent link="FL_calf"/>"#, r#"<parent link="FL_thigh"/>"#),
+        Err(ImportError::NoFoot(_))
+    ));
+    assert!(matches!(
+        broken(r#"<parent link="FL_calf"/>"#, r#"<parent link="nowhere"/>"#),
+        Err(ImportError::NoSuchLink { .. })
+    ));
+    assert!(matches!(import("<robot", &Options::default()), Err(ImportError::Syntax(_))));
+    assert!(matches!(import("<robot name=\"x\"/>", &Options::default()), Err(ImportError::NotATree(_))));
+    let locked = Options { locked: vec!["FR_hip".into()] };
+    assert!(matches!(import(&urdf(), &locked), Err(ImportError::NoSuchJoint(_))));
+}
