@@ -1,7 +1,7 @@
 //! Every derivative that the optimizer uses, against central differences of the same path.
 
 use piaffe::altered::Altered;
-use piaffe::cycle::{Cycle, ELEMENTS};
+use piaffe::cycle::{Cycle, elements};
 use piaffe::gaits::GAITS;
 use piaffe::model::Gait;
 use piaffe::motion::Criterion;
@@ -10,10 +10,11 @@ use piaffe::sqp::{Problem, Values};
 
 /// Imposes every path constraint at its lowest point in every element too.
 fn impose_everywhere(cycle: &mut Cycle, theta: &[f64], values: &mut Values) {
+    let elements = elements(cycle.description());
     for phase in 0..cycle.phases() {
         for constraint in 0..cycle.path_count() {
-            for element in 0..ELEMENTS {
-                cycle.impose(phase, constraint, (element as f64 + 0.5) / ELEMENTS as f64, 0.01);
+            for element in 0..elements {
+                cycle.impose(phase, constraint, (element as f64 + 0.5) / elements as f64, 0.01);
             }
         }
     }

@@ -20,14 +20,23 @@ pub struct Dip {
     pub lowest: Lowest,
 }
 
+/// Minima of a constraint in an element nearer than this (share of the element) are one.
+const SAME: f64 = 0.1;
+
 impl Dip {
+    /// Whether it is the same dip, at another time perhaps.
+    pub fn is(&self, other: &Dip) -> bool {
+        let place = (self.constraint, self.element) == (other.constraint, other.element);
+        place && (self.lowest.at - other.lowest.at).abs() < SAME
+    }
+
     /// First node of its element.
     pub fn first(&self) -> usize {
         self.element * (NODES - 1)
     }
 }
 
-/// The lowest point of the quartic through five values, and how it depends on them.
+/// A lowest point of the quartic through five values, and how it depends on them.
 #[derive(Clone, Debug, Default)]
 pub struct Lowest {
     /// Place in the element, 0 to 1.
@@ -42,21 +51,21 @@ pub struct Lowest {
 }
 
 impl Lowest {
-    pub fn of(lobatto: &Lobatto, values: &[f64; NODES]) -> Lowest {
+    /// Of several minima that nearest to `from`: a row must not jump from one to another.
+    pub fn of(lobatto: &Lobatto, values: &[f64; NODES], from: f64) -> Lowest {
         let quartic = lobatto.interpolate(values);
-        let (mut at, mut value, mut curvature) = (0.0, values[0], f64::INFINITY);
-        if values[NODES - 1] < value {
-            (at, value) = (1.0, values[NODES - 1]);
-        }
         let mut buffer = [0.0; NODES];
+        let slope = derivative(&quartic, &mut buffer);
         let mut stationary = Roots::new();
-        roots(derivative(&quartic, &mut buffer), &mut stationary);
-        for (root, second) in stationary {
-            let there = evaluate(&quartic, root);
-            if there < value && second > 0.0 {
-                (at, value, curvature) = (root, there, second);
-            }
-        }
+        roots(slope, &mut stationary);
+        let inside = stationary.into_iter().filter(|(_, second)| *second > 0.0);
+        let start = (evaluate(slope, 0.0) >= 0.0).then_some((0.0, f64::INFINITY));
+        let end = (evaluate(slope, 1.0) <= 0.0).then_some((1.0, f64::INFINITY));
+        let distance = |(at, _): &(f64, f64)| (at - from).abs();
+        let nearest = inside.chain(start).chain(end).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        // A quartic has a minimum on an interval; without numbers it has none.
+        let (at, curvature) = nearest.unwrap_or((from, f64::INFINITY));
+        let value = evaluate(&quartic, at);
         Lowest { at, value, shape: lobatto.values(at), slopes: lobatto.slopes(at), curvature }
     }
 }
@@ -69,9 +78,9 @@ mod tests {
     fn the_minimum_and_its_first_two_derivatives() {
         let lobatto = Lobatto::new();
         let values = |x: f64, y: f64| lobatto.nodes.map(|s| (s - 0.4).powi(2) + x * s.powi(3) + y * (s * 5.0).sin());
-        let value = |x, y| Lowest::of(&lobatto, &values(x, y)).value;
+        let value = |x, y| Lowest::of(&lobatto, &values(x, y), 0.5).value;
         let (x, y, h) = (0.1, 0.02, 1e-4);
-        let lowest = Lowest::of(&lobatto, &values(x, y));
+        let lowest = Lowest::of(&lobatto, &values(x, y), 0.5);
         let dot = |a: &[f64; NODES], b: &[f64; NODES]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
         let (dx, dy) = (lobatto.nodes.map(|s| s.powi(3)), lobatto.nodes.map(|s| (s * 5.0).sin()));
         let first = (value(x + h, y) - value(x - h, y)) / (2.0 * h);
@@ -86,7 +95,15 @@ mod tests {
     #[test]
     fn at_an_end_the_minimum_stays() {
         let lobatto = Lobatto::new();
-        let lowest = Lowest::of(&lobatto, &lobatto.nodes.map(|s| 1.0 - s));
-        assert_eq!((lowest.at, lowest.value, lowest.curvature), (1.0, 0.0, f64::INFINITY));
+        let lowest = Lowest::of(&lobatto, &lobatto.nodes.map(|s| 1.0 - s), 0.3);
+        assert!(lowest.at == 1.0 && lowest.value.abs() < 1e-14 && lowest.curvature == f64::INFINITY);
+    }
+
+    #[test]
+    fn of_two_minima_the_row_keeps_to_its_own() {
+        let lobatto = Lobatto::new();
+        let values = lobatto.nodes.map(|s| (s - 0.2).powi(2) * (s - 0.8).powi(2) - 0.001 * s);
+        let [left, right] = [0.3, 0.7].map(|from| Lowest::of(&lobatto, &values, from));
+        assert!((left.at - 0.2).abs() < 0.02 && (right.at - 0.8).abs() < 0.02 && right.value < left.value);
     }
 }

@@ -25,8 +25,10 @@ use hessian::Workspace;
 use phase::Phase;
 pub use sample::Sample;
 
-/// Elements per half step: 4 × this + 1 nodes.
-pub const ELEMENTS: usize = 8;
+/// Elements per half step, of 4 intervals each: more where the polynomials of eq. 15 may bend more often.
+pub fn elements(d: &Description) -> usize {
+    2 * d.polynomial_order
+}
 
 /// The optimization problem of one gait, criterion and speed.
 pub struct Cycle<'a> {
@@ -129,7 +131,7 @@ pub struct Label {
 
 impl<'a> Cycle<'a> {
     pub fn new(gait: &'a dyn Gait, criterion: Criterion, speed: f64) -> Cycle<'a> {
-        Self::with_elements(gait, criterion, speed, ELEMENTS)
+        Self::with_elements(gait, criterion, speed, elements(gait.description()))
     }
 
     /// The same with another number of elements per half step: few will do far from an optimum.
@@ -162,6 +164,10 @@ impl<'a> Cycle<'a> {
 
     pub fn description(&self) -> &'a Description {
         self.gait.description()
+    }
+
+    pub fn gait(&self) -> &'a dyn Gait {
+        self.gait
     }
 
     /// The same problem, with collocation nodes only.
@@ -220,14 +226,15 @@ impl<'a> Cycle<'a> {
         }
     }
 
-    /// Imposes a path constraint at its lowest point in the element around `s`, where it is known to have this value
+    /// Imposes a path constraint at its lowest point near `s`, in the element there, where it is known to have this value
     /// (scaled) in the last simulated motion.
     pub fn impose(&mut self, phase: usize, constraint: usize, s: f64, value: f64) {
         let p = &mut self.phases[phase];
         let element = p.mesh.element(s);
-        let lowest = p.lowest(&self.path[constraint], element);
+        let from = s * p.mesh.elements as f64 - element as f64;
+        let lowest = p.lowest(&self.path[constraint], element, from);
         let dip = Dip { constraint, element, offset: value - lowest.value, lowest };
-        match p.dips.iter_mut().find(|known| known.constraint == constraint && known.element == element) {
+        match p.dips.iter_mut().find(|known| known.is(&dip)) {
             Some(known) => *known = dip,
             None => p.dips.push(dip),
         }

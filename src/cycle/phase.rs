@@ -98,10 +98,11 @@ impl Phase {
         self.mesh.collocation() - 1
     }
 
-    /// Where a path constraint is lowest in an element of the last simulated motion, as the quartic has it.
-    pub fn lowest(&self, constraint: &PathConstraint, element: usize) -> Lowest {
+    /// Where a path constraint is lowest in an element of the last simulated motion, as the quartic has it, near `from`.
+    pub fn lowest(&self, constraint: &PathConstraint, element: usize, from: f64) -> Lowest {
         let first = element * (NODES - 1);
-        Lowest::of(&self.mesh.lobatto, &std::array::from_fn(|i| constraint.value(self.instants.row(first + i))))
+        let values = std::array::from_fn(|i| constraint.value(self.instants.row(first + i)));
+        Lowest::of(&self.mesh.lobatto, &values, from)
     }
 
     /// Quantities of a node at the linearized point.
@@ -163,7 +164,8 @@ impl Phase {
         self.instants.differentiate(d, &self.mesh, &self.stance, &self.parameters);
         self.linearized.copy_from_slice(&self.instants.values);
         for k in 0..self.dips.len() {
-            self.dips[k].lowest = self.lowest(&path[self.dips[k].constraint], self.dips[k].element);
+            let Dip { constraint, element, ref lowest, .. } = self.dips[k];
+            self.dips[k].lowest = self.lowest(&path[constraint], element, lowest.at);
         }
         let last = self.last();
         self.instants.platform_x_gradient(d, &self.stance, 0, &mut self.scratch);

@@ -279,7 +279,7 @@ impl Problem for Cycle<'_> {
         }
         for p in &self.phases {
             for (dip, slot) in p.dips.iter().zip(&mut slots) {
-                *slot = p.lowest(&self.path[dip.constraint], dip.element).value + dip.offset;
+                *slot = p.lowest(&self.path[dip.constraint], dip.element, dip.lowest.at).value + dip.offset;
             }
         }
         for p in &self.phases {

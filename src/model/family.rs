@@ -25,13 +25,16 @@ pub enum Sign {
     Positive,
 }
 
+/// A gait of one robot of a family, or why no robot can have these numbers.
+pub type Member = Result<Box<dyn Parametric>, Unfit>;
+
 /// A gait of all robots that differ in some parameters.
 pub struct Family {
     /// That of the specification's robot.
     pub description: &'static Description,
     pub parameters: &'static [Parameter],
     /// The member with these values, one for each parameter.
-    pub member: fn(&[f64]) -> Result<Box<dyn Parametric>, Unfit>,
+    pub member: fn(&[f64]) -> Member,
 }
 
 /// Values of parameters that no robot of the family has.

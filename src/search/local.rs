@@ -2,7 +2,7 @@
 
 use super::nearest::nearest;
 use super::refine::{dips, probe};
-use crate::cycle::{Cycle, Label};
+use crate::cycle::{Cycle, Label, elements};
 use crate::model::Gait;
 use crate::motion::{Costs, Criterion, Motion};
 use crate::sqp::{self, Control, KktResidual, Options, Solution, Status};
@@ -40,9 +40,6 @@ pub struct Conflict {
 /// optimum a kink tells a step more than is true.
 const SMOOTHING: [f64; 2] = [0.12, 0.012];
 
-/// Elements per half step while the optimum is far.
-const COARSE: usize = 4;
-
 /// Options of the solver for a problem of this kind.
 pub fn options(cycle: &Cycle) -> Options {
     Options {
@@ -69,11 +66,36 @@ pub fn descend(
     start: &[f64],
     observe: &mut dyn FnMut(&sqp::Iteration) -> Control,
 ) -> Local {
-    let mut cycle = Cycle::with_elements(gait, criterion, speed, COARSE);
+    let mut cycle = Cycle::with_elements(gait, criterion, speed, elements(gait.description()) / 2);
     let options = options(&cycle);
     let nearest = nearest(&mut cycle, start, &options, observe);
-    let mut theta = nearest.x;
-    let mut iterations = nearest.iterations;
+    let local = approach(cycle, &nearest.x, &options, observe);
+    Local { iterations: nearest.iterations + local.iterations, ..local }
+}
+
+/// Minimizes from `start` at once and with steps of any length. It gets lost more often than [`descend`], and ends in optima
+/// that [`descend`] never sees.
+pub fn plunge(
+    gait: &dyn Gait,
+    criterion: Criterion,
+    speed: f64,
+    start: &[f64],
+    observe: &mut dyn FnMut(&sqp::Iteration) -> Control,
+) -> Local {
+    let cycle = Cycle::new(gait, criterion, speed);
+    let options = Options { step_limit: f64::INFINITY, ..options(&cycle) };
+    approach(cycle, start, &options, observe)
+}
+
+/// An approximate optimum of `cycle`, then the optimum.
+fn approach(
+    mut cycle: Cycle,
+    start: &[f64],
+    options: &Options,
+    observe: &mut dyn FnMut(&sqp::Iteration) -> Control,
+) -> Local {
+    let (gait, criterion, speed) = (cycle.gait(), cycle.criterion, cycle.speed);
+    let (mut theta, mut iterations) = (start.to_vec(), 0);
     let smoothing: &[f64] = match criterion {
         Criterion::Energy => &SMOOTHING,
         Criterion::Torque => &[0.0],
@@ -81,7 +103,7 @@ pub fn descend(
     for share in smoothing {
         let d = gait.description();
         cycle.smoothing = share * d.total_mass() * d.gravity * speed;
-        let solution = sqp::minimize(&mut cycle, &theta, &rough(&options), observe);
+        let solution = sqp::minimize(&mut cycle, &theta, &rough(options), observe);
         iterations += solution.iterations;
         theta = solution.x;
     }

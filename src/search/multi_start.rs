@@ -1,7 +1,7 @@
 //! Many starts, all local optima: in parallel, with the same result for any number of threads.
 
 use super::guess::{Plan, walk};
-use super::local::{Local, descend, follow};
+use super::local::{Local, descend, follow, plunge};
 use crate::cycle::Cycle;
 use crate::model::Gait;
 use crate::motion::Criterion;
@@ -72,8 +72,11 @@ pub fn search_from(
             let local = match neighbours.get(k) {
                 Some(theta) => follow(gait, criterion, speed, theta, &mut |_| Control::Continue),
                 None => {
-                    let theta = start(gait, criterion, speed, settings.seed, k - neighbours.len());
-                    descend(gait, criterion, speed, &theta, &mut |_| Control::Continue)
+                    // Every second start plunges: what is found must not depend on one way of beginning.
+                    let k = k - neighbours.len();
+                    let theta = start(gait, criterion, speed, settings.seed, k);
+                    let way = if k % 2 == 1 { plunge } else { descend };
+                    way(gait, criterion, speed, &theta, &mut |_| Control::Continue)
                 }
             };
             done(k);

@@ -76,7 +76,7 @@ pub fn dips(probe: &mut Cycle, theta: &[f64]) -> Result<Dips, Undefined> {
             }
         }
     }
-    // Of two dips in one element the lower one has the last word.
+    // Of two dips that turn out to be one, the lower has the last word.
     result.found.sort_by(|a, b| b.value.total_cmp(&a.value));
     Ok(result)
 }
