@@ -88,8 +88,7 @@ pub struct Joint {
 /// A virtual leg.
 #[derive(Clone, Debug)]
 pub struct Leg {
-    /// The real legs that it stands for, all of one build: of masses, inertias, torques and reactions each has an
-    /// equal share.
+    /// The real legs that it stands for. They move alike; of torques and reactions each has an equal share.
     pub members: Cow<'static, [Member]>,
     pub first_joint: usize,
     pub end_joint: usize,
@@ -102,8 +101,18 @@ pub struct Leg {
 #[derive(Clone, Debug)]
 pub struct Member {
     pub name: &'static str,
+    /// Its own links from the platform down, with the virtual leg's coordinates. The parent of the first is the
+    /// platform (0), of the others the link before (1, 2, …).
+    pub bodies: Cow<'static, [Body]>,
+    /// Foot from the joint of the last link, m.
+    pub foot: [f64; 3],
+}
+
+impl Member {
     /// Its first joint from the platform's mass centre, in the platform's axes, m.
-    pub mount: [f64; 3],
+    pub fn mount(&self) -> [f64; 3] {
+        self.bodies.first().map_or(self.foot, |b| b.offset)
+    }
 }
 
 /// Limits of §6.1.

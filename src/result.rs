@@ -210,6 +210,11 @@ impl GaitResult {
         true
     }
 
+    /// What tells it from others of its robot: gait, criterion and speed.
+    pub fn name(&self) -> String {
+        format!("{}-{}-{}", self.gait.replace('/', "-"), self.criterion.name(), self.speed)
+    }
+
     /// The motion, if there is one.
     pub fn motion(&self) -> Option<Motion> {
         self.is_optimal().then(|| Motion { half_steps: self.variables.clone() })

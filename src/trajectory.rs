@@ -70,6 +70,11 @@ impl Basis {
         k == 1 || k == self.order
     }
 
+    /// Coefficients of sⁱ in the basis polynomial of parameter `k`.
+    pub fn coefficients(&self, k: usize) -> &[f64] {
+        &self.coefficients[k]
+    }
+
     pub fn jet(&self, s: f64) -> Jet {
         let mut jet = Jet::default();
         for c in &self.coefficients {

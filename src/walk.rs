@@ -5,7 +5,7 @@
 
 use crate::cycle::Cycle;
 use crate::instant::Quantities;
-use crate::model::{Description, Gait, HalfSteps, Rotation};
+use crate::model::{Body, Description, Gait, HalfSteps, Rotation};
 use crate::motion::{Criterion, Motion};
 use crate::stance::Undefined;
 
@@ -14,8 +14,8 @@ pub type Point = [f64; 3];
 
 /// One step: two half steps.
 #[derive(Clone, Debug)]
-pub struct Walk {
-    pub description: &'static Description,
+pub struct Walk<'a> {
+    pub description: &'a Description,
     pub half_steps: [Support; 2],
     /// In order of time. A half step's last moment and the next one's first are at the same time, before and
     /// after the impact.
@@ -60,7 +60,7 @@ pub struct Moment {
     pub swing: Point,
 }
 
-impl Walk {
+impl<'a> Walk<'a> {
     /// The walk at equally spaced times, both ends of each half step among them.
     ///
     /// # Errors
@@ -68,7 +68,7 @@ impl Walk {
     ///
     /// # Panics
     /// If the motion has not the numbers that the gait needs; `verify` tells.
-    pub fn even(gait: &'static dyn Gait, motion: &Motion, intervals: usize) -> Result<Walk, Undefined> {
+    pub fn even(gait: &'a dyn Gait, motion: &Motion, intervals: usize) -> Result<Walk<'a>, Undefined> {
         Walk::new(gait, motion, |_| (0..=intervals).map(|k| k as f64 / intervals as f64).collect())
     }
 
@@ -76,7 +76,7 @@ impl Walk {
     ///
     /// # Errors, Panics
     /// As for [`Walk::even`].
-    pub fn at_rate(gait: &'static dyn Gait, motion: &Motion, rate: f64) -> Result<Walk, Undefined> {
+    pub fn at_rate(gait: &'a dyn Gait, motion: &Motion, rate: f64) -> Result<Walk<'a>, Undefined> {
         Walk::new(gait, motion, |h| {
             let first = (h.start * rate).ceil() as u64;
             let shares = (first..).map(|k| (k as f64 / rate - h.start) / h.duration);
@@ -84,7 +84,7 @@ impl Walk {
         })
     }
 
-    fn new(gait: &'static dyn Gait, motion: &Motion, shares: impl Fn(&Support) -> Vec<f64>) -> Result<Walk, Undefined> {
+    fn new(gait: &'a dyn Gait, motion: &Motion, shares: impl Fn(&Support) -> Vec<f64>) -> Result<Walk<'a>, Undefined> {
         let d = gait.description();
         // Neither criterion nor speed has a part in where the robot is.
         let mut cycle = Cycle::new(gait, Criterion::Torque, 1.0);
@@ -142,13 +142,13 @@ impl Walk {
 }
 
 /// How a half step that defines the gait is performed: as it is, or by the other leg.
-struct Role {
-    gait: &'static dyn Gait,
+struct Role<'a> {
+    gait: &'a dyn Gait,
     leg: usize,
     mirrored: bool,
 }
 
-impl Role {
+impl Role<'_> {
     /// A vector of the gait's positions in world axes.
     fn point(&self, p: &[f64]) -> Point {
         let z = p.get(2).copied().unwrap_or(0.0);
@@ -198,33 +198,25 @@ impl Role {
 impl Moment {
     /// The joints of a real leg from the platform down, and its foot, m: of member `member` of virtual leg `leg`.
     pub fn chain(&self, d: &Description, leg: usize, member: usize) -> Vec<Point> {
-        let leg = &d.legs[leg];
-        self.points(d, leg.first_joint..leg.end_joint, leg.members[member].mount, leg.foot)
+        let member = &d.legs[leg].members[member];
+        self.points(d, member.bodies.iter(), member.foot)
     }
 
     /// The same of a virtual leg.
     pub fn virtual_chain(&self, d: &Description, leg: usize) -> Vec<Point> {
         let leg = &d.legs[leg];
-        let hip = d.bodies.iter().find(|b| b.coordinate == Some(leg.first_joint)).map_or([0.0; 3], |b| b.offset);
-        self.points(d, leg.first_joint..leg.end_joint, hip, leg.foot)
+        let joints = leg.first_joint..leg.end_joint;
+        let bodies = d.bodies.iter().filter(|b| b.coordinate.is_some_and(|c| joints.contains(&c)));
+        self.points(d, bodies, leg.foot)
     }
 
-    /// A point of the platform, given from its mass centre in its own axes, m.
-    pub fn on_platform(&self, d: &Description, point: Point) -> Point {
-        add(self.platform[0], self.platform_axes(d).turn(point))
-    }
-
-    fn points(&self, d: &Description, joints: std::ops::Range<usize>, mount: Point, foot: Point) -> Vec<Point> {
-        let (mut at, mut axes, mut offset) = (self.platform[0], self.platform_axes(d), mount);
-        let mut points = Vec::with_capacity(joints.len() + 1);
-        for body in d.bodies.iter().filter(|b| b.coordinate.is_some_and(|c| joints.contains(&c))) {
-            let coordinate = body.coordinate.unwrap_or_default();
-            if coordinate != joints.start {
-                offset = body.offset;
-            }
-            at = add(at, axes.turn(offset));
+    fn points<'b>(&self, d: &Description, bodies: impl Iterator<Item = &'b Body>, foot: Point) -> Vec<Point> {
+        let (mut at, mut axes) = (self.platform[0], self.platform_axes(d));
+        let mut points = Vec::new();
+        for body in bodies {
+            at = add(at, axes.turn(body.offset));
             points.push(at);
-            axes = axes.rotated(body.axis, self.q[coordinate]);
+            axes = axes.rotated(body.axis, body.coordinate.map_or(0.0, |c| self.q[c]));
         }
         points.push(add(at, axes.turn(foot)));
         points

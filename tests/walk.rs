@@ -10,7 +10,7 @@ use piaffe::walk::{Point, Walk};
 const SPEED: f64 = 0.6;
 
 /// Any optimum of every gait.
-fn walks(intervals: usize) -> Vec<(&'static dyn Gait, Motion, Walk)> {
+fn walks(intervals: usize) -> Vec<(&'static dyn Gait, Motion, Walk<'static>)> {
     let settings = Settings { starts: 1, ..Settings::default() };
     let mut all = Vec::new();
     for gait in GAITS.iter().copied() {

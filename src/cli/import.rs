@@ -17,14 +17,14 @@ pub fn run(file: &str, folder: Option<PathBuf>, locked: Vec<String>) -> anyhow::
     let gaits = folder.join("gaits");
     std::fs::create_dir_all(&gaits).with_context(|| format!("cannot create {}", gaits.display()))?;
     for (path, text) in &files {
-        output::write_text(path, text)?;
-        println!("written to {}", path.display());
+        output::write_file(path, text.as_bytes())?;
+        output::say!("written to {}", path.display());
     }
-    println!();
+    output::say!("");
     for note in &made.notes {
-        println!("- {note}");
+        output::say!("- {note}");
     }
-    println!(
+    output::say!(
         "\nThe build reads every folder of model-spec/ that has a robot.toml: build again, and its gaits are there."
     );
     Ok(true)

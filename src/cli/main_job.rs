@@ -1,8 +1,9 @@
 //! The main job: every gait and criterion at 0.6 m/s, beside the values of the paper (§6.2, §6.3).
 
 use super::optimize::{progress, solve};
-use super::{first_robot, output};
+use super::{first_robot, output, report};
 use piaffe::motion::Criterion;
+use piaffe::report::Extremes;
 use piaffe::result::GaitResult;
 use piaffe::search::multi_start::Settings;
 use std::io::Write;
@@ -31,17 +32,26 @@ const PUBLISHED: [Published; 6] = [
 pub fn run(folder: &Path) -> anyhow::Result<bool> {
     let started = Instant::now();
     std::fs::create_dir_all(folder).map_err(|e| anyhow::anyhow!("cannot create {}: {e}", folder.display()))?;
-    println!("Optimal gaits at {SPEED} m/s\n");
-    println!(
+    output::say!("Optimal gaits at {SPEED} m/s\n");
+    output::say!(
         "{:<8} {:<9} {:>10} {:<7} {:<13} {:>9} {:>9} {:>9}  {:>10} {:<12} active",
-        "gait", "criterion", "cost", "unit", "half steps, s", "violation", "cycle", "KKT", "paper", "half steps"
+        "gait",
+        "criterion",
+        "cost",
+        "unit",
+        "half steps, s",
+        "violation",
+        "cycle",
+        "KKT",
+        "paper",
+        "half steps"
     );
     let settings = Settings::default();
     // In the order of the paper.
     let mut gaits: Vec<_> = first_robot().collect();
     gaits.sort_by_key(|g| PUBLISHED.iter().position(|p| p.gait == g.description().gait));
     let bar = progress((gaits.len() * Criterion::ALL.len() * settings.starts) as u64, "starts");
-    let mut all = true;
+    let mut results = Vec::new();
     for criterion in Criterion::ALL {
         for gait in &gaits {
             let name = gait.description().gait;
@@ -49,21 +59,27 @@ pub fn run(folder: &Path) -> anyhow::Result<bool> {
             let result = solve(*gait, criterion, SPEED, &settings, &bar);
             output::write_json(&folder.join(format!("{name}-{}.json", criterion.name())), &result)?;
             bar.suspend(|| output::quiet_when_closed(row(&result)))?;
-            all &= result.is_optimal();
+            results.push(result);
         }
     }
     bar.finish_and_clear();
-    println!(
+    output::say!(
         "\nEvery optimum is local: the best of {} starts. The paper does not give all of the robot's parameters",
         settings.starts
     );
-    println!("(see model-spec/robot.toml), so its values are a yardstick, not a like-for-like comparison.");
-    println!("{:.1} s; results in {}", started.elapsed().as_secs_f64(), folder.display());
+    output::say!("(see model-spec/robot.toml), so its values are a yardstick, not a like-for-like comparison.");
+    let all = results.iter().all(GaitResult::is_optimal);
+    let any = results.iter().any(GaitResult::is_optimal);
+    output::say!("{:.1} s; results in {}", started.elapsed().as_secs_f64(), folder.display());
+    if any {
+        let page = report::write(results, Extremes::default(), None, folder)?;
+        output::say!("To be seen in {}", page.display());
+    }
     Ok(all)
 }
 
 fn row(r: &GaitResult) -> std::io::Result<()> {
-    let mut out = std::io::stdout().lock();
+    let mut out = output::person();
     let durations: Vec<String> = r.durations.iter().map(|t| format!("{t:.3}")).collect();
     let published = PUBLISHED.iter().find(|p| p.gait == r.gait && p.criterion == r.criterion);
     let (paper, paper_steps) = published.map_or((String::new(), ""), |p| (format!("{:.2}", p.cost), p.durations));

@@ -1,18 +1,21 @@
 //! `piaffe`: what a person types, and what comes back.
 
 mod dynamics;
+mod export;
 mod import;
 mod input;
 mod journal;
 mod main_job;
+mod manual;
 mod model;
 mod optimize;
 mod output;
+mod report;
 mod summary;
 mod sweep;
 
 use clap::builder::PossibleValuesParser;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use piaffe::gaits::GAITS;
 use piaffe::model::Gait;
 use piaffe::motion::Criterion;
@@ -29,7 +32,14 @@ const NO_OPTIMUM: u8 = 3;
     long_about = "Optimal periodic gaits of the robots in model-spec/, each with a receipt.\n\n\
                   Without a command: finds the optimum of every gait and criterion at 0.6 m/s, prints them\n\
                   beside the published values and writes the results to a folder.",
-    after_help = "Exit codes: 0 success, 1 something failed, 2 wrong usage, 3 no optimum (infeasible or not converged)."
+    after_help = "Examples:\n  \
+                  piaffe                                             the main job; open results/index.html\n  \
+                  piaffe optimize trot --speed 0.6 --json trot.json  one optimum\n  \
+                  piaffe report trot.json --out trot                 a page that shows it\n  \
+                  piaffe export trot.json --format csv               its numbers over time\n  \
+                  piaffe sweep --speeds 0.2..1.2:0.1 --out sweep     many speeds\n\n\
+                  Exit codes: 0 success, 1 something failed, 2 wrong usage, 3 no optimum (infeasible or not converged).\n\
+                  NO_COLOR=1 turns colours off. Files are written whole or not at all, also when the program is interrupted."
 )]
 struct Arguments {
     #[command(subcommand)]
@@ -37,6 +47,9 @@ struct Arguments {
     /// Folder for the results of the main job.
     #[arg(long, default_value = "results", value_name = "DIR")]
     out: PathBuf,
+    /// Say nothing but errors, and what was asked for with `-`.
+    #[arg(long, short, global = true)]
+    quiet: bool,
 }
 
 #[derive(Subcommand)]
@@ -100,6 +113,40 @@ enum Command {
         #[arg(long, value_name = "FILE|-")]
         json: Option<String>,
     },
+    /// Write a result for other software: tables, arrays, polynomials, robot models.
+    #[command(
+        after_help = "Examples:\n  piaffe export results/trot-energy.json --format csv --rate 1000 --out trot.csv\n  piaffe export results/trot-energy.json --format mjcf --out quadruped.xml"
+    )]
+    Export {
+        /// A result as JSON; `-` reads standard input.
+        #[arg(value_name = "FILE|-")]
+        result: String,
+        #[arg(long, value_enum)]
+        format: export::Format,
+        /// Moments per second in csv and npz.
+        #[arg(long, default_value_t = 1000.0, value_parser = rate, value_name = "HZ")]
+        rate: f64,
+        /// `-` is standard output.
+        #[arg(long, default_value = "-", value_name = "FILE|-")]
+        out: String,
+    },
+    /// Show results: one page with the walks, all figures, and the receipts in words.
+    ///
+    /// The page needs neither network nor other files. Every figure is also written as SVG and PDF.
+    #[command(
+        after_help = "Examples:\n  piaffe report results/trot-energy.json --out trot\n  piaffe report sweep --out atlas"
+    )]
+    Report {
+        /// Results as JSON, or the folder of a sweep.
+        #[arg(required = true, value_name = "FILE|DIR")]
+        results: Vec<PathBuf>,
+        /// Of results over many speeds, show in detail the walks at the speed nearest to this one, m/s.
+        #[arg(long, value_parser = positive, value_name = "SPEED")]
+        detail: Option<f64>,
+        /// Folder for the report.
+        #[arg(long, default_value = "report", value_name = "DIR")]
+        out: PathBuf,
+    },
     /// Find the optima of gaits over a range of speeds, their greatest speeds and where they overtake each other.
     ///
     /// Every point is written as it is found; a sweep that was interrupted goes on where it stopped.
@@ -126,11 +173,29 @@ enum Command {
         #[arg(long, default_value_t = 1)]
         seed: u64,
     },
+    /// Write the completions of a shell to standard output.
+    #[command(after_help = "Example:\n  piaffe completions bash > ~/.local/share/bash-completion/completions/piaffe")]
+    Completions { shell: clap_complete::Shell },
+    /// Write the manual pages, one per command.
+    #[command(after_help = "Example:\n  piaffe manual --out ~/.local/share/man/man1 && man piaffe")]
+    Manual {
+        /// Folder for the pages.
+        #[arg(long, default_value = ".", value_name = "DIR")]
+        out: PathBuf,
+    },
+}
+
+/// The command line itself, for whoever describes it.
+fn command() -> clap::Command {
+    Arguments::command()
 }
 
 /// Runs the program.
 pub fn run() -> ExitCode {
     let arguments = Arguments::parse();
+    if arguments.quiet {
+        output::be_quiet();
+    }
     let outcome = match arguments.command {
         None => main_job::run(&arguments.out),
         Some(Command::Dynamics { gait, file }) => dynamics::run(by_name(&gait), &file),
@@ -140,6 +205,10 @@ pub fn run() -> ExitCode {
             let settings = piaffe::search::multi_start::Settings { starts: starts as usize, seed };
             optimize::run(by_name(&gait), criterion_by_name(&criterion), speed, &settings, json.as_deref())
         }
+        Some(Command::Completions { shell }) => manual::completions(shell),
+        Some(Command::Manual { out }) => manual::pages(&out),
+        Some(Command::Export { result, format, rate, out }) => export::run(&result, format, rate, &out),
+        Some(Command::Report { results, detail, out }) => report::run(&results, detail, &out),
         Some(Command::Sweep { gait, criterion, speeds, folder, starts, seed }) => {
             let settings = piaffe::search::multi_start::Settings { starts: starts as usize, seed };
             let gaits: Vec<_> =
@@ -187,5 +256,13 @@ fn positive(text: &str) -> Result<f64, String> {
         Ok(v) if v.is_finite() && v > 0.0 => Ok(v),
         Ok(_) => Err("must be a positive number of m/s".into()),
         Err(_) => Err("is not a number; write for example 0.6".into()),
+    }
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(v) if (1.0..=1e6).contains(&v) => Ok(v),
+        Ok(_) => Err("must be between 1 and 1000000 per second".into()),
+        Err(_) => Err("is not a number; write for example 1000".into()),
     }
 }

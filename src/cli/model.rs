@@ -50,7 +50,7 @@ fn as_json(d: &Description) -> Value {
         })
     });
     let legs = d.legs.iter().map(|leg| {
-        let members = leg.members.iter().map(|m| json!({ "name": m.name, "mount": m.mount }));
+        let members = leg.members.iter().map(|m| json!({ "name": m.name, "mount": m.mount() }));
         let joints: Vec<&str> = d.joints[leg.first_joint..leg.end_joint].iter().map(|j| j.name).collect();
         json!({ "members": members.collect::<Vec<_>>(), "joints": joints, "foot": leg.foot })
     });

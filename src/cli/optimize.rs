@@ -29,7 +29,7 @@ pub fn run(
     if let Some(target) = json {
         output::json_to(target, &result)?;
         if target != "-" {
-            println!("written to {target}");
+            output::say!("written to {target}");
         }
     }
     Ok(result.is_optimal())
@@ -44,7 +44,7 @@ pub fn solve(gait: &dyn Gait, criterion: Criterion, speed: f64, settings: &Setti
 
 /// A bar on standard error; hidden where that is no terminal.
 pub fn progress(length: u64, unit: &str) -> ProgressBar {
-    let bar = ProgressBar::new(length);
+    let bar = if output::is_quiet() { ProgressBar::hidden() } else { ProgressBar::new(length) };
     let style = ProgressStyle::with_template(&format!("{{msg}} {{bar:30}} {{pos}}/{{len}} {unit} {{elapsed}}"));
     bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
     bar

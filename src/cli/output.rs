@@ -1,21 +1,45 @@
-//! Files that are written whole or not at all.
+//! What is written: files, whole or not at all, and words for a person, unless none are wanted.
 
 use anyhow::Context;
 use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Writes a value as JSON to `path`; a reader never sees half of it.
-pub fn write_json(path: &Path, value: &impl Serialize) -> anyhow::Result<()> {
-    write_text(path, &(serde_json::to_string_pretty(value)? + "\n"))
+/// Set once, when the arguments are read.
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+/// From now on nothing is said but errors and what was asked for with `-`.
+pub fn be_quiet() {
+    QUIET.store(true, Ordering::Relaxed);
 }
 
-/// Writes a text to `path`; a reader never sees half of it.
-pub fn write_text(path: &Path, text: &str) -> anyhow::Result<()> {
+pub fn is_quiet() -> bool {
+    QUIET.load(Ordering::Relaxed)
+}
+
+/// Where words for a person go.
+pub fn person() -> Box<dyn Write> {
+    if is_quiet() { Box::new(std::io::sink()) } else { Box::new(std::io::stdout().lock()) }
+}
+
+/// Says a line. A reader who has gone misses it.
+pub fn line(text: std::fmt::Arguments) {
+    let _ = writeln!(person(), "{text}");
+}
+
+/// Like `println!`, but for a person who may want quiet and may be gone.
+macro_rules! say {
+    ($($words:tt)*) => { $crate::cli::output::line(format_args!($($words)*)) };
+}
+pub(super) use say;
+
+/// Writes a file; a reader never sees half of it.
+pub fn write_file(path: &Path, contents: &[u8]) -> anyhow::Result<()> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut file =
         tempfile::NamedTempFile::new_in(folder).with_context(|| format!("cannot write into {}", folder.display()))?;
-    file.write_all(text.as_bytes())?;
+    file.write_all(contents).with_context(|| format!("cannot write {}", path.display()))?;
     file.as_file().sync_all()?;
     #[cfg(unix)]
     {
@@ -25,6 +49,13 @@ pub fn write_text(path: &Path, text: &str) -> anyhow::Result<()> {
     }
     file.persist(path).with_context(|| format!("cannot write {}", path.display()))?;
     Ok(())
+}
+
+/// Writes a value as JSON to `path`, whole or not at all.
+pub fn write_json(path: &Path, value: &impl Serialize) -> anyhow::Result<()> {
+    let mut text = serde_json::to_vec_pretty(value)?;
+    text.push(b'\n');
+    write_file(path, &text)
 }
 
 /// Writes JSON to a file, or to standard output for `-`.

@@ -12,7 +12,7 @@ fn rev_per_min(joint_speed: f64, gear: f64) -> f64 {
 
 /// Prints all there is to know about a result.
 pub fn print(description: &Description, r: &GaitResult) -> std::io::Result<()> {
-    let mut out = std::io::stdout().lock();
+    let mut out = super::output::person();
     writeln!(out, "{} of {}, least {} at {} m/s: {}", r.gait, r.robot, r.criterion.name(), r.speed, r.message)?;
     if !r.conflicts.is_empty() {
         for c in &r.conflicts {

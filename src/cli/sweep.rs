@@ -1,7 +1,7 @@
 //! `piaffe sweep`: optima over speeds, greatest speeds and crossovers, resumed where an earlier run stopped.
 
 use super::journal::{Folder, effort, file};
-use super::output;
+use super::{output, report};
 use indicatif::{ProgressBar, ProgressStyle};
 use piaffe::model::Gait;
 use piaffe::motion::Criterion;
@@ -51,10 +51,16 @@ pub fn run(
     for result in all() {
         folder.write(result)?;
     }
-    output::write_json(&path.join("sweep.json"), &Summary::new(&lines, &comparisons))?;
+    let summary = serde_json::to_value(Summary::new(&lines, &comparisons))?;
+    output::write_json(&path.join("sweep.json"), &summary)?;
     output::quiet_when_closed(tell(&lines, criteria, speeds, &comparisons))?;
-    println!("results in {}", path.display());
-    Ok(all().any(GaitResult::is_optimal))
+    output::say!("results in {}", path.display());
+    let any = all().any(GaitResult::is_optimal);
+    if any {
+        let page = report::write(all().cloned().collect(), serde_json::from_value(summary)?, None, path)?;
+        output::say!("To be seen in {}", page.display());
+    }
+    Ok(any)
 }
 
 fn line(gait: &'static dyn Gait, criteria: &[Criterion], speeds: &[f64], settings: &Settings, folder: &Folder) -> Line {
@@ -71,7 +77,8 @@ fn line(gait: &'static dyn Gait, criteria: &[Criterion], speeds: &[f64], setting
 /// A bar in units of effort, with what is left; hidden where standard error is no terminal.
 fn progress(effort: u64) -> ProgressBar {
     let style = ProgressStyle::with_template("{msg} {bar:30} {percent} % {elapsed}, about {eta} left");
-    ProgressBar::new(effort).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())).with_message("optima")
+    let bar = if output::is_quiet() { ProgressBar::hidden() } else { ProgressBar::new(effort) };
+    bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())).with_message("optima")
 }
 
 /// What `sweep.json` holds.
@@ -127,7 +134,7 @@ impl<'a> Summary<'a> {
 }
 
 fn tell(lines: &[Line], criteria: &[Criterion], speeds: &[f64], comparisons: &[Comparison]) -> std::io::Result<()> {
-    let mut out = std::io::stdout().lock();
+    let mut out = output::person();
     out.write_all(table(lines, criteria, speeds).as_bytes())?;
     for line in lines {
         let name = line.gait.description().key;

@@ -136,7 +136,7 @@ pub fn member<M: Parametric + 'static>(parameters: &[f64]) -> Result<Box<dyn Par
 
 /// For generated members: what a member is made of, and its parameters, checked. `numbers` computes the
 /// mechanism's numbers: gravity; of each body offset, mass, mass centre and inertia; of each joint the
-/// rotor's inertia; of each leg the foot and its members' mounts.
+/// rotor's inertia; of each leg the foot, and of its members their bodies and feet.
 ///
 /// # Errors
 /// If no robot has these parameters.
@@ -171,15 +171,14 @@ impl Description {
         let mut numbers = numbers.iter().copied();
         let mut replace = |place: &mut f64| *place = numbers.next().unwrap_or(f64::NAN);
         replace(&mut self.gravity);
-        for body in self.bodies.to_mut() {
-            body.offset.iter_mut().for_each(&mut replace);
-            replace(&mut body.mass);
-            body.com.iter_mut().chain(body.inertia.as_flattened_mut()).for_each(&mut replace);
-        }
+        self.bodies.to_mut().iter_mut().for_each(|body| body.replace_numbers(&mut replace));
         self.joints.to_mut().iter_mut().for_each(|joint| replace(&mut joint.rotor_inertia));
         for leg in &mut self.legs {
             leg.foot.iter_mut().for_each(&mut replace);
-            leg.members.to_mut().iter_mut().flat_map(|member| &mut member.mount).for_each(&mut replace);
+            for member in leg.members.to_mut() {
+                member.bodies.to_mut().iter_mut().for_each(|body| body.replace_numbers(&mut replace));
+                member.foot.iter_mut().for_each(&mut replace);
+            }
         }
     }
 
@@ -213,6 +212,14 @@ impl Description {
             }
         }
         Ok(())
+    }
+}
+
+impl Body {
+    fn replace_numbers(&mut self, replace: &mut impl FnMut(&mut f64)) {
+        self.offset.iter_mut().for_each(&mut *replace);
+        replace(&mut self.mass);
+        self.com.iter_mut().chain(self.inertia.as_flattened_mut()).for_each(replace);
     }
 }
 

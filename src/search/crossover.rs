@@ -6,13 +6,13 @@ use super::multi_start::Settings;
 use crate::model::Gait;
 use crate::motion::Criterion;
 use crate::result::GaitResult;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Width to which a crossing is bisected, m/s.
 const BISECTION: f64 = 1e-4;
 
 /// Two gaits over the speeds at which both go.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Comparison {
     pub criterion: Criterion,
     pub gaits: [String; 2],
@@ -25,7 +25,7 @@ pub struct Comparison {
 }
 
 /// Where the cheaper of two gaits changes.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Crossover {
     /// Speeds just below and above, m/s.
     pub bracket: [f64; 2],

@@ -1,7 +1,7 @@
 //! The mechanism's numbers as expressions: constants, or sums of parameters of the real robot.
 
 use crate::expr::{Poly, Var};
-use crate::mechanism::{Family, Mechanism};
+use crate::mechanism::{Body, Family, Mechanism, Member};
 
 /// What of a mechanism is measured, in the order of [`Mechanism::numbers`]; SI units.
 #[derive(Clone, Debug)]
@@ -61,7 +61,9 @@ impl Quantities {
         let rotor_inertia = mechanism.joints.iter().map(|_| one()).collect();
         let feet = mechanism.legs.each_ref().map(|leg| {
             let foot = [(); 3].map(|()| one());
-            leg.members.iter().for_each(|_| drop([(); 3].map(|()| one())));
+            // The dynamics are those of the virtual leg: its members' numbers are for others.
+            let of_member = |m: &Member| Body::COUNT * m.bodies.len() + 3;
+            (0..leg.members.iter().map(of_member).sum()).for_each(|_| drop(one()));
             foot
         });
         Quantities { numbers, gravity, bodies, rotor_inertia, feet }

@@ -1,7 +1,7 @@
 //! The mechanism's numbers as a static value of the runtime's types.
 
 use super::function::{Function, ident};
-use crate::mechanism::Mechanism;
+use crate::mechanism::{Body, Mechanism};
 use crate::spec::{HalfSteps, Rotation};
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
@@ -16,18 +16,19 @@ fn floats(values: &[f64]) -> TokenStream {
     quote!([#(#values),*])
 }
 
+fn body(b: &Body, runtime: &TokenStream) -> TokenStream {
+    let (name, axis) = (&b.name, b.axis.index());
+    let (parent, coordinate) = (option(b.parent), option(b.coordinate));
+    let (offset, mass, com) = (floats(&b.offset), float(b.mass), floats(&b.com));
+    let inertia = b.inertia.iter().map(|row| floats(row));
+    quote! {
+        #runtime::Body { name: #name, parent: #parent, coordinate: #coordinate, axis: #axis,
+            offset: #offset, mass: #mass, com: #com, inertia: [#(#inertia),*] }
+    }
+}
+
 pub fn description(m: &Mechanism, key: &str, functions: &[Function], runtime: &TokenStream) -> TokenStream {
-    let bodies = m.bodies.iter().map(|b| {
-        let (name, axis) = (&b.name, b.axis.index());
-        let parent = option(b.parent);
-        let coordinate = option(b.coordinate);
-        let (offset, mass, com) = (floats(&b.offset), float(b.mass), floats(&b.com));
-        let inertia = b.inertia.iter().map(|row| floats(row));
-        quote! {
-            #runtime::Body { name: #name, parent: #parent, coordinate: #coordinate, axis: #axis,
-                offset: #offset, mass: #mass, com: #com, inertia: [#(#inertia),*] }
-        }
-    });
+    let bodies = m.bodies.iter().map(|b| body(b, runtime));
     let joints = m.joints.iter().map(|j| {
         let name = &j.name;
         let (range, gear) = (floats(&j.range), float(j.gear));
@@ -39,12 +40,13 @@ pub fn description(m: &Mechanism, key: &str, functions: &[Function], runtime: &T
         }
     });
     let legs = m.legs.iter().map(|l| {
-        let (start, end, body, foot) = (l.joints.start, l.joints.end, l.foot_body, floats(&l.foot));
+        let (start, end, foot_body, foot) = (l.joints.start, l.joints.end, l.foot_body, floats(&l.foot));
         let members = l.members.iter().map(|r| {
-            let (name, mount) = (&r.name, floats(&r.mount));
-            quote!(#runtime::Member { name: #name, mount: #mount })
+            let (name, foot) = (&r.name, floats(&r.foot));
+            let bodies = r.bodies.iter().map(|b| body(b, runtime));
+            quote!(#runtime::Member { name: #name, bodies: std::borrow::Cow::Borrowed(&[#(#bodies),*]), foot: #foot })
         });
-        quote!(#runtime::Leg { members: std::borrow::Cow::Borrowed(&[#(#members),*]), first_joint: #start, end_joint: #end, foot_body: #body, foot: #foot })
+        quote!(#runtime::Leg { members: std::borrow::Cow::Borrowed(&[#(#members),*]), first_joint: #start, end_joint: #end, foot_body: #foot_body, foot: #foot })
     });
     let rotation = ident(match m.rotation {
         Rotation::None => "None",

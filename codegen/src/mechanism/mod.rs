@@ -9,7 +9,7 @@ mod parameter;
 pub use family::Family;
 pub use parameter::{Parameter, Sign, parameters, select, with};
 
-use crate::spec::{Axis, Gait, HalfSteps, Inertia, Joint, Limits, Robot, Rotation, Unactuated};
+use crate::spec::{Axis, Gait, HalfSteps, Inertia, Joint, Leg, Limits, Robot, Rotation, Segment, Unactuated};
 
 /// The tree of rigid bodies of one gait's model; SI units, body axes x forward, y up, z right.
 #[derive(Clone, Debug)]
@@ -74,11 +74,14 @@ pub struct VirtualLeg {
     pub foot: [f64; 3],
 }
 
-/// A real leg: its name, and its first joint from the platform's mass centre, m.
+/// A real leg: its own links, which move as those of the virtual leg.
 #[derive(Clone, Debug)]
 pub struct Member {
     pub name: String,
-    pub mount: [f64; 3],
+    /// From the platform down. The parent of the first is the platform, of the others the link before.
+    pub bodies: Vec<Body>,
+    /// Foot from the last joint, m.
+    pub foot: [f64; 3],
 }
 
 impl Mechanism {
@@ -97,31 +100,23 @@ impl Mechanism {
         }];
         let mut joints = Vec::new();
         let legs = [0, 1].map(|k| {
-            let leg = robot.virtual_leg(&gait.virtual_legs[k]);
             let from_centre = |mount: &[f64; 3]| [0, 1, 2].map(|axis| mount[axis] - robot.platform.com[axis]);
-            let members = gait.virtual_legs[k].iter().map(|i| &robot.legs[*i]);
-            let members =
-                members.map(|leg| Member { name: leg.name.clone(), mount: from_centre(&leg.mount) }).collect();
-            let first = joints.len();
-            let mut parent = 0;
-            let mut offset = from_centre(&leg.mount);
-            for segment in &leg.chain {
-                let link = &segment.link;
-                bodies.push(Body {
-                    name: format!("{}{}", link.name, k + 1),
-                    parent: Some(parent),
-                    coordinate: Some(joints.len()),
-                    axis: segment.joint.axis,
-                    offset,
-                    mass: link.mass,
-                    com: link.com,
-                    inertia: link.inertia,
-                });
+            let (first, body) = (joints.len(), bodies.len());
+            let members = gait.virtual_legs[k].iter().map(|i| {
+                let leg = &robot.legs[*i];
+                let (links, foot) = chain(leg, from_centre(&leg.mount), 1, first);
+                Member { name: leg.name.clone(), bodies: links, foot }
+            });
+            let members = members.collect();
+            let leg = robot.virtual_leg(&gait.virtual_legs[k]);
+            let (mut links, foot) = chain(&leg, from_centre(&leg.mount), body, first);
+            for (link, segment) in links.iter_mut().zip(&leg.chain) {
+                link.name += &(k + 1).to_string();
                 joints.push(Actuated::new(&segment.joint, k + 1, gait.virtual_legs[k].len()));
-                parent = bodies.len() - 1;
-                offset = link.end;
             }
-            VirtualLeg { members, joints: first..joints.len(), foot_body: parent, foot: offset }
+            bodies.extend(links);
+            let foot_body = bodies.len() - 1;
+            VirtualLeg { members, joints: first..joints.len(), foot_body, foot }
         });
         let unactuated = match gait.unactuated {
             Unactuated::Platform => joints.len(),
@@ -148,19 +143,17 @@ impl Mechanism {
     }
 
     /// Everything that is measured, in one fixed order: gravity; of each body offset, mass, mass centre and
-    /// inertia; of each joint the rotor's inertia; of each leg the foot and its members' mounts.
+    /// inertia; of each joint the rotor's inertia; of each leg the foot, and of its members their bodies and feet.
     pub fn numbers(&self) -> Vec<f64> {
         let mut numbers = vec![self.gravity];
-        for body in &self.bodies {
-            numbers.extend(body.offset);
-            numbers.push(body.mass);
-            numbers.extend(body.com);
-            numbers.extend(body.inertia.as_flattened());
-        }
+        numbers.extend(self.bodies.iter().flat_map(Body::numbers));
         numbers.extend(self.joints.iter().map(|joint| joint.rotor_inertia));
         for leg in &self.legs {
             numbers.extend(leg.foot);
-            numbers.extend(leg.members.iter().flat_map(|member| member.mount));
+            for member in &leg.members {
+                numbers.extend(member.bodies.iter().flat_map(Body::numbers));
+                numbers.extend(member.foot);
+            }
         }
         numbers
     }
@@ -200,6 +193,36 @@ impl Mechanism {
     /// Where the platform does not rotate, the torque of the unactuated joint keeps it level (eq. 1).
     pub fn independent_torques(&self) -> Vec<usize> {
         (0..self.joints.len()).filter(|j| *j != self.unactuated).collect()
+    }
+}
+
+/// Bodies of a leg that hangs at `mount`, numbered from `first_body` and with coordinates from `first_joint`; and
+/// its foot from the last joint.
+fn chain(leg: &Leg, mount: [f64; 3], first_body: usize, first_joint: usize) -> (Vec<Body>, [f64; 3]) {
+    let mut offset = mount;
+    let bodies = leg.chain.iter().enumerate().map(|(i, Segment { joint, link })| {
+        let parent = if i == 0 { 0 } else { first_body + i - 1 };
+        let at = std::mem::replace(&mut offset, link.end);
+        Body {
+            name: link.name.clone(),
+            parent: Some(parent),
+            coordinate: Some(first_joint + i),
+            axis: joint.axis,
+            offset: at,
+            mass: link.mass,
+            com: link.com,
+            inertia: link.inertia,
+        }
+    });
+    (bodies.collect(), offset)
+}
+
+impl Body {
+    /// How many numbers are measured of a body.
+    pub const COUNT: usize = 3 + 1 + 3 + 9;
+
+    fn numbers(&self) -> Vec<f64> {
+        [&self.offset[..], &[self.mass], &self.com, self.inertia.as_flattened()].concat()
     }
 }
 

@@ -1,0 +1,147 @@
+//! The real robot for MuJoCo, in the pose and with the speed in which a walk begins. World axes have z up.
+
+use super::frame;
+use super::xml::{Xml, numbers};
+use crate::model::Rotation;
+use crate::model::{Body, Description, Leg, Member};
+use crate::walk::{Moment, Walk};
+
+/// Links can be slender rods without inertia about themselves; MuJoCo wants some.
+const LEAST_INERTIA: f64 = 1e-9;
+/// Radius of the feet, which are points here, m.
+const FOOT: f64 = 0.004;
+
+pub fn mjcf(walk: &Walk) -> String {
+    let d = walk.description;
+    let mut xml = Xml::new();
+    xml.element("mujoco", &[("model", d.robot.into())], |x| {
+        x.comment("Axes: x forward, y left, z up. Torques are those of one real leg's joint.");
+        let compiler =
+            [("angle", "radian".into()), ("autolimits", "true".into()), ("boundinertia", LEAST_INERTIA.to_string())];
+        x.leaf("compiler", &compiler);
+        x.leaf("option", &[("gravity", numbers(&[0.0, 0.0, -d.gravity])), ("timestep", "0.0005".into())]);
+        let links = [("contype", "0".into()), ("conaffinity", "0".into()), ("rgba", "0.6 0.65 0.7 1".into())];
+        x.element("default", &[], |x| x.leaf("geom", &links));
+        x.element("worldbody", &[], |x| {
+            x.leaf("light", &[("pos", "0 0 3".into()), ("dir", "0 0 -1".into())]);
+            let ground = [
+                ("name", "ground".into()),
+                ("type", "plane".into()),
+                ("size", "0 0 0.5".into()),
+                ("contype", "1".into()),
+                ("conaffinity", "1".into()),
+                ("friction", numbers(&[d.limits.friction, 0.005, 0.0001])),
+                ("rgba", "0.9 0.92 0.94 1".into()),
+            ];
+            x.leaf("geom", &ground);
+            platform(x, d);
+        });
+        x.element("actuator", &[], |x| {
+            each_joint(d, |leg, name, joint, members| {
+                let most = d.joints[joint].max_torque / members;
+                let name = format!("{leg}_{name}");
+                let range = numbers(&[-most, most]);
+                x.leaf("motor", &[("name", name.clone()), ("joint", name), ("ctrlrange", range)]);
+            });
+        });
+        x.element("keyframe", &[], |x| x.leaf("key", &start(d, &walk.moments[0])));
+    });
+    xml.finish()
+}
+
+/// Calls with each real leg's joints: leg, joint's name without the virtual leg's number, joint, legs that share it.
+fn each_joint(d: &Description, mut call: impl FnMut(&str, &str, usize, f64)) {
+    for leg in &d.legs {
+        for member in leg.members.iter() {
+            for joint in leg.first_joint..leg.end_joint {
+                call(member.name, super::joint_name(d, joint), joint, leg.members.len() as f64);
+            }
+        }
+    }
+}
+
+fn inertial(x: &mut Xml, mass: f64, com: [f64; 3], inertia: &[[f64; 3]; 3]) {
+    let t = frame::tensor(inertia);
+    let at = [("mass", mass.to_string()), ("pos", numbers(&frame::vector(com)))];
+    let diagonal = t[0][1] == 0.0 && t[0][2] == 0.0 && t[1][2] == 0.0;
+    let tensor = match diagonal {
+        true => ("diaginertia", numbers(&[t[0][0], t[1][1], t[2][2]])),
+        false => ("fullinertia", numbers(&[t[0][0], t[1][1], t[2][2], t[0][1], t[0][2], t[1][2]])),
+    };
+    x.leaf("inertial", &[at[0].clone(), at[1].clone(), tensor]);
+}
+
+fn platform(x: &mut Xml, d: &Description) {
+    let body = &d.bodies[0];
+    x.element("body", &[("name", body.name.into())], |x| {
+        x.leaf("freejoint", &[("name", "base".into())]);
+        inertial(x, body.mass, body.com, &body.inertia);
+        let mounts: Vec<[f64; 3]> =
+            d.legs.iter().flat_map(|l| l.members.iter()).map(|m| frame::vector(m.mount())).collect();
+        let half = |k: usize| mounts.iter().map(|m| m[k].abs()).fold(0.01, f64::max);
+        x.leaf("geom", &[("type", "box".into()), ("size", numbers(&[half(0), half(1), 0.02]))]);
+        for leg in &d.legs {
+            for member in leg.members.iter() {
+                limb(x, d, leg, member, &member.bodies);
+            }
+        }
+    });
+}
+
+/// A link, with the rest of the leg inside.
+fn limb(x: &mut Xml, d: &Description, leg: &Leg, member: &Member, bodies: &[Body]) {
+    let Some((body, rest)) = bodies.split_first() else { return };
+    let end = frame::vector(rest.first().map_or(member.foot, |next| next.offset));
+    let joint = body.coordinate.unwrap_or(leg.first_joint);
+    let limits = &d.joints[joint];
+    let share = leg.members.len() as f64;
+    let name = format!("{}_{}", member.name, body.name);
+    x.element("body", &[("name", name), ("pos", numbers(&frame::vector(body.offset)))], |x| {
+        let attributes = [
+            ("name", format!("{}_{}", member.name, super::joint_name(d, joint))),
+            ("axis", numbers(&frame::axis(body.axis))),
+            ("range", numbers(&limits.range)),
+            ("armature", (limits.rotor_inertia / share).to_string()),
+        ];
+        x.leaf("joint", &attributes);
+        inertial(x, body.mass, body.com, &body.inertia);
+        let bone = numbers(&[[0.0; 3], end].concat());
+        x.leaf("geom", &[("type", "capsule".into()), ("fromto", bone), ("size", "0.008".into())]);
+        if rest.is_empty() {
+            x.leaf("site", &[("name", format!("{}_foot", member.name)), ("pos", numbers(&end))]);
+            let foot = [
+                ("type", "sphere".into()),
+                ("size", FOOT.to_string()),
+                ("pos", numbers(&end)),
+                ("contype", "1".into()),
+                ("conaffinity", "1".into()),
+                ("friction", numbers(&[d.limits.friction, 0.005, 0.0001])),
+            ];
+            x.leaf("geom", &foot);
+        }
+        limb(x, d, leg, member, rest);
+    });
+}
+
+/// Positions and velocities of a moment, in MuJoCo's order.
+fn start(d: &Description, m: &Moment) -> [(&'static str, String); 3] {
+    let (angle, rate) = match d.rotation {
+        Rotation::None => (0.0, 0.0),
+        _ => (m.q[d.joints()], m.qd[d.joints()]),
+    };
+    let axis = match d.rotation {
+        Rotation::Roll => frame::axis(0),
+        _ => frame::axis(2),
+    };
+    let (sin, cos) = (0.5 * angle).sin_cos();
+    let mut position = frame::vector(m.platform[0]).to_vec();
+    position.push(cos);
+    position.extend(axis.map(|a| sin * a));
+    let mut velocity = frame::vector(m.platform[1]).to_vec();
+    velocity.extend(axis.map(|a| rate * a));
+    each_joint(d, |_, _, joint, _| {
+        position.push(m.q[joint]);
+        velocity.push(m.qd[joint]);
+    });
+    [("name", "start".into()), ("qpos", numbers(&position)), ("qvel", numbers(&velocity))]
+}

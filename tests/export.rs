@@ -1,0 +1,240 @@
+//! Exported files in the hands of others: MuJoCo and numpy where a Python has them (`PIAFFE_PYTHON` names it).
+
+use piaffe::gaits::GAITS;
+use piaffe::model::{Description, Gait, Rotation};
+use piaffe::motion::{Criterion, Motion};
+use piaffe::result::GaitResult;
+use piaffe::search::multi_start::{Settings, search};
+use piaffe::walk::{Moment, Walk};
+use serde_json::{Value, json};
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+/// An optimum of a gait, as the file that `piaffe optimize` writes.
+fn optimum(gait: &'static dyn Gait) -> (GaitResult, Motion) {
+    let settings = Settings { starts: 1, ..Settings::default() };
+    let found = search(gait, Criterion::Torque, 0.6, &settings, &|_| {});
+    let result = GaitResult::new(gait, Criterion::Torque, 0.6, &found, settings.seed, || 0.0);
+    let motion = result.motion().unwrap();
+    (result, motion)
+}
+
+fn export(result: &GaitResult, arguments: &[&str]) -> Vec<u8> {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_piaffe"))
+        .args([&["export", "-"], arguments].concat())
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(&serde_json::to_vec(result).unwrap()).unwrap();
+    let out = child.wait_with_output().unwrap();
+    assert!(out.status.success());
+    out.stdout
+}
+
+#[test]
+fn a_table_has_the_numbers_of_the_walk() {
+    for gait in GAITS {
+        let (result, motion) = optimum(*gait);
+        let text = String::from_utf8(export(&result, &["--format", "csv", "--rate", "200"])).unwrap();
+        let mut lines = text.lines();
+        let names: Vec<&str> = lines.next().unwrap().split(',').collect();
+        let column = |name: &str| names.iter().position(|n| *n == name).unwrap_or_else(|| panic!("no column {name}"));
+        let rows: Vec<Vec<f64>> = lines.map(|l| l.split(',').map(|x| x.parse().unwrap()).collect()).collect();
+        let walk = Walk::at_rate(*gait, &motion, 200.0).unwrap();
+        assert_eq!(rows.len(), walk.moments.len());
+        let d = gait.description();
+        let knee = d.joints[1].name;
+        for (row, m) in rows.iter().zip(&walk.moments) {
+            assert_eq!(row.len(), names.len());
+            assert_eq!(row[column("t")], m.time);
+            assert_eq!(row[column(&format!("qd_{knee}"))], m.qd[1]);
+            assert_eq!(row[column(&format!("torque_{knee}"))], m.torque[1]);
+            assert_eq!(row[column("force_y")], m.force[1]);
+            let foot = *m.chain(d, 1, 0).last().unwrap();
+            assert_eq!(row[column(&format!("foot_{}_x", d.legs[1].members[0].name))], foot[0]);
+        }
+    }
+}
+
+#[test]
+fn a_controller_that_follows_the_polynomials_does_the_walk() {
+    for gait in GAITS {
+        let (result, motion) = optimum(*gait);
+        let program: Value = serde_json::from_slice(&export(&result, &["--format", "json"])).unwrap();
+        let walk = Walk::even(*gait, &motion, 20).unwrap();
+        let d = gait.description();
+        for m in &walk.moments {
+            let half = &program["half_steps"][m.half_step];
+            let t = m.share * half["duration"].as_f64().unwrap();
+            let members: Vec<&str> = d.legs[m.stance].members.iter().map(|m| m.name).collect();
+            assert_eq!(half["stance"], json!(members));
+            assert_eq!(half["coordinates"].as_array().unwrap().len(), d.prescribed());
+            for (j, polynomial) in half["coordinates"].as_array().unwrap().iter().enumerate() {
+                let c: Vec<f64> =
+                    polynomial["coefficients"].as_array().unwrap().iter().map(|c| c.as_f64().unwrap()).collect();
+                let value = |c: &[f64]| c.iter().rev().fold(0.0, |sum, c| sum * t + c);
+                let rate: Vec<f64> = c.iter().enumerate().skip(1).map(|(i, c)| i as f64 * c).collect();
+                // β is another coordinate where the legs have exchanged their roles.
+                let k = d.joints.iter().position(|joint| polynomial["name"] == joint.name).unwrap_or(d.joints());
+                assert!((value(&c) - m.q[k]).abs() < 1e-9, "{}: {j}", d.gait);
+                assert!((value(&rate) - m.qd[k]).abs() < 1e-8, "{}: {j}", d.gait);
+            }
+        }
+    }
+}
+
+/// A Python with MuJoCo and numpy; in continuous integration there must be one.
+fn python() -> Option<String> {
+    let named = std::env::var("PIAFFE_PYTHON").ok();
+    let candidate = named.clone().unwrap_or("python3".into());
+    let has = Command::new(&candidate).args(["-c", "import mujoco, numpy"]).stderr(Stdio::null()).status();
+    if has.is_ok_and(|s| s.success()) {
+        return Some(candidate);
+    }
+    assert!(named.is_none() && std::env::var_os("CI").is_none(), "{candidate} has no mujoco or no numpy");
+    eprintln!("skipped: no Python with mujoco and numpy (PIAFFE_PYTHON names one)");
+    None
+}
+
+/// With z up.
+fn turned([x, y, z]: [f64; 3]) -> [f64; 3] {
+    [x, -z, y]
+}
+
+/// How MuJoCo's velocities (free platform, then each real leg's joints) follow from Ẋ = [ṗ, q̇]: nv × n.
+fn selection(d: &Description) -> Vec<Vec<f64>> {
+    let (nc, nj) = (d.positions(), d.joints());
+    let n = nc + d.orientations();
+    let unit = |k: usize| [0, 1, 2].map(|i| if i == k { 1.0 } else { 0.0 });
+    let mut rows = vec![vec![0.0; n]; 6];
+    for k in 0..nc {
+        for (row, v) in rows.iter_mut().zip(turned(unit(k))) {
+            row[k] = v;
+        }
+    }
+    let axis = match d.rotation {
+        Rotation::None => None,
+        Rotation::Pitch => Some(2),
+        Rotation::Roll => Some(0),
+    };
+    if let Some(axis) = axis {
+        for (row, v) in rows[3..].iter_mut().zip(turned(unit(axis))) {
+            row[nc + nj] = v;
+        }
+    }
+    for leg in &d.legs {
+        for _ in leg.members.iter() {
+            rows.extend(
+                (leg.first_joint..leg.end_joint).map(|j| (0..n).map(|k| f64::from(u8::from(k == nc + j))).collect()),
+            );
+        }
+    }
+    rows
+}
+
+/// Positions, velocities and accelerations in MuJoCo's order.
+fn state(d: &Description, m: &Moment) -> Value {
+    let nj = d.joints();
+    let theta = if d.rotation == Rotation::None { 0.0 } else { m.q[nj] };
+    let axis = if d.rotation == Rotation::Roll { [1.0, 0.0, 0.0] } else { turned([0.0, 0.0, 1.0]) };
+    let mut position = turned(m.platform[0]).to_vec();
+    position.push((0.5 * theta).cos());
+    position.extend(axis.map(|a| a * (0.5 * theta).sin()));
+    for leg in &d.legs {
+        for _ in leg.members.iter() {
+            position.extend(&m.q[leg.first_joint..leg.end_joint]);
+        }
+    }
+    let spread = |platform: [f64; 3], q: &[f64]| -> Vec<f64> {
+        let x = [&platform[..d.positions()], q].concat();
+        selection(d).iter().map(|row| row.iter().zip(&x).map(|(s, x)| s * x).sum()).collect()
+    };
+    json!({ "qpos": position, "qvel": spread(m.platform[1], &m.qd), "qacc": spread(m.platform[2], &m.qdd) })
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect()
+}
+
+fn ask(python: &str, request: &Value) -> Value {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/export/oracle.py");
+    let mut child = Command::new(python).arg(script).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+    child.stdin.take().unwrap().write_all(request.to_string().as_bytes()).unwrap();
+    let out = child.wait_with_output().unwrap();
+    assert!(out.status.success());
+    serde_json::from_slice(&out.stdout).unwrap()
+}
+
+/// The mass matrix of the real robot, its legs coupled as the gait couples them, is A of eq. 5; and the walk's
+/// torques and reactions are what MuJoCo says that its accelerations take.
+#[test]
+fn mujoco_agrees_about_masses_feet_and_inverse_dynamics_of_the_real_robot() {
+    let Some(python) = python() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    for gait in GAITS {
+        let d = gait.description();
+        let (result, motion) = optimum(*gait);
+        let files = ["mjcf", "npz", "urdf"].map(|format| {
+            let path = folder.path().join(format!("{}.{}", d.gait, if format == "mjcf" { "xml" } else { format }));
+            std::fs::write(&path, export(&result, &["--format", format, "--rate", "500"])).unwrap();
+            path
+        });
+        let walk = Walk::even(*gait, &motion, 6).unwrap();
+        let moments: Vec<Value> = walk.moments.iter().map(|m| state(d, m)).collect();
+        let answer =
+            ask(&python, &json!({ "model": files[0], "arrays": files[1], "urdf": files[2], "moments": moments }));
+
+        let mass = d.total_mass();
+        assert!((answer["mass"].as_f64().unwrap() - mass).abs() < 1e-9);
+        // Without a floating base, MuJoCo's reader of URDF makes the platform part of the world.
+        let legs = answer["mass_urdf"].as_f64().unwrap();
+        assert!((legs - mass).abs() < 1e-9 || (legs - (mass - d.bodies[0].mass)).abs() < 1e-9, "{legs} of {mass}");
+        let start = numbers(&answer["start"]);
+        let wanted = numbers(&moments[0]["qpos"]);
+        assert!(start.iter().zip(&wanted).all(|(a, b)| (a - b).abs() < 1e-12));
+
+        let s = selection(d);
+        let (nc, nq) = (d.positions(), d.orientations());
+        let n = nc + nq;
+        for (m, found) in walk.moments.iter().zip(answer["moments"].as_array().unwrap()) {
+            for leg in 0..2 {
+                for (k, member) in d.legs[leg].members.iter().enumerate() {
+                    let foot = numbers(&found["feet"][format!("{}_foot", member.name)]);
+                    let ours = turned(*m.chain(d, leg, k).last().unwrap());
+                    assert!(foot.iter().zip(ours).all(|(a, b)| (a - b).abs() < 1e-9), "{}", member.name);
+                }
+            }
+            let mut a = vec![0.0; n * n];
+            gait.inertia(&m.q, &mut a);
+            let full: Vec<Vec<f64>> = found["mass"].as_array().unwrap().iter().map(numbers).collect();
+            for i in 0..n {
+                for k in 0..n {
+                    let projected: f64 = (0..s.len())
+                        .flat_map(|r| (0..s.len()).map(move |c| (r, c)))
+                        .map(|(r, c)| s[r][i] * full[r][c] * s[c][k])
+                        .sum();
+                    assert!((projected - a[i * n + k]).abs() < 1e-7, "{}: A[{i}, {k}]", d.gait);
+                }
+            }
+            // Sᵀ(M q̈ + bias) = D_Γ Γ + D_i F_i.
+            let forces = numbers(&found["forces"]);
+            let mut jacobian = vec![0.0; n * nc];
+            gait.foot_jacobian(m.stance, &m.q, &mut jacobian);
+            for i in 0..n {
+                let theirs: f64 = s.iter().zip(&forces).map(|(row, f)| row[i] * f).sum();
+                let torque = if (nc..nc + d.joints()).contains(&i) { m.torque[i - nc] } else { 0.0 };
+                let ours: f64 = torque + (0..nc).map(|c| jacobian[i * nc + c] * m.force[c]).sum::<f64>();
+                assert!((theirs - ours).abs() < 1e-5, "{} at {} s: row {i}: {theirs} and {ours}", d.gait, m.time);
+            }
+        }
+
+        let arrays = &answer["arrays"];
+        let walk = Walk::at_rate(*gait, &motion, 500.0).unwrap();
+        assert_eq!(numbers(&arrays["t"]), walk.moments.iter().map(|m| m.time).collect::<Vec<_>>());
+        assert_eq!(numbers(&arrays["torque"][3]), walk.moments[3].torque);
+        assert_eq!(numbers(&arrays["feet"][3][0]), walk.moments[3].chain(d, 0, 0).pop().unwrap());
+        assert_eq!(arrays["joints"], json!(d.joints.iter().map(|j| j.name).collect::<Vec<_>>()));
+    }
+}
