@@ -8,9 +8,8 @@ use piaffe_codegen::emit::gait_source;
 use piaffe_codegen::mechanism::Mechanism;
 use piaffe_codegen::program::Program;
 use piaffe_codegen::spec::{parse_gait, parse_robot};
-use piaffe_codegen::{SpecFile, generate};
+use piaffe_codegen::{RobotFiles, SpecFile, generate};
 use std::fmt::Write;
-use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
@@ -38,9 +37,10 @@ fn row(links: usize) -> String {
         kernels.iter().map(|k| (k.name.as_str(), Program::new(&model.ring, k).operations().flops)).collect();
     let factor = start.elapsed().as_secs_f64() - derive;
     let start = Instant::now();
-    let source = gait_source(&mechanism, "crate::model", "growth").expect("generated code parses");
+    let source = gait_source(&mechanism, "chain", "", None, "growth").expect("generated code parses");
     let all = start.elapsed().as_secs_f64();
-    let files = generate(&robot, &[gait], "crate::model").expect("the chain is generated");
+    let files = RobotFiles { module: "chain".into(), robot, gaits: vec![gait] };
+    let files = generate(&[files], None).expect("the chain is generated");
     let rustc = compile(&files);
     let mut line = format!("| {links} | {derive:.2} | {factor:.2} | {all:.2} | {} | {rustc:.1} |", source.len() / 1000);
     for kernel in KERNELS {
@@ -85,12 +85,11 @@ fn chain(links: usize) -> (SpecFile, SpecFile) {
 fn compile(files: &[(String, String)]) -> f64 {
     let folder = std::env::temp_dir().join(format!("piaffe-growth-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("the temporary folder is writable");
-    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("../src/model.rs");
-    let library = format!(
-        "#[path = {model:?}]\npub mod model;\npub mod gaits {{ include!(concat!(env!(\"OUT_DIR\"), \"/gaits.rs\")); }}\n"
-    );
+    let library = "include!(concat!(env!(\"OUT_DIR\"), \"/gaits.rs\"));\n".to_string();
     for (name, text) in files.iter().map(|(n, t)| (n.as_str(), t)).chain([("lib.rs", &library)]) {
-        std::fs::write(folder.join(name), text).expect("the temporary folder is writable");
+        let path = folder.join(name);
+        let written = path.parent().map_or(Ok(()), std::fs::create_dir_all).and_then(|()| std::fs::write(&path, text));
+        written.expect("the temporary folder is writable");
     }
     let start = Instant::now();
     let status = Command::new("rustc")
