@@ -47,6 +47,7 @@ pub fn options(cycle: &Cycle) -> Options {
         feasibility: 1e-8,
         iteration_limit: 400,
         step_limit: 1.0,
+        estimate_multipliers: true,
         scale: Some(cycle.scale()),
         ..Options::default()
     }

@@ -21,6 +21,9 @@ pub struct Options {
     pub penalty: f64,
     /// Use [`Problem::hessian`](super::Problem::hessian) if the problem provides it.
     pub exact_hessian: bool,
+    /// Estimate multipliers before the first exact Hessian: right for starts near an optimum, whose first steps would lead away
+    /// without the constraints' curvature.
+    pub estimate_multipliers: bool,
     /// Solver of the quadratic subproblems.
     pub subproblems: Subproblems,
 }
@@ -37,6 +40,7 @@ impl Default for Options {
             step_limit: f64::INFINITY,
             penalty: 1.0,
             exact_hessian: true,
+            estimate_multipliers: false,
             subproblems: Subproblems::ActiveSet,
         }
     }

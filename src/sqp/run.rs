@@ -133,7 +133,7 @@ impl<'a, 'p, P: Problem> Run<'a, 'p, P> {
         self.merit.ceiling = self.point.violation;
         self.forget();
         self.subproblem.gather(&self.view, &self.point, &self.mu)?;
-        if self.exact { self.estimate_multipliers() } else { Ok(()) }
+        if self.exact && self.options.estimate_multipliers { self.estimate_multipliers() } else { Ok(()) }
     }
 
     /// Curvature before any is known: the unconstrained step has the length of `Options::initial_step`.
