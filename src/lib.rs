@@ -24,6 +24,11 @@ pub mod trajectory;
 pub mod verify;
 pub mod walk;
 
+/// The programs in the book are run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/library.md")]
+mod book {}
+
 /// Generated dynamics: one module per gait of `model-spec`.
 pub mod gaits {
     include!(concat!(env!("OUT_DIR"), "/gaits.rs"));

@@ -154,3 +154,55 @@ fn a_gait_is_chosen_together_with_its_robot() {
     assert_eq!(out.status.code(), Some(2));
     assert!(text(&out.stderr).contains("'rabbit/walk'"), "{}", text(&out.stderr));
 }
+
+#[test]
+fn quiet_runs_say_nothing_but_what_was_asked_for() {
+    let out = piaffe(&["optimize", "trot", "--speed", "0.6", "--starts", "1", "--quiet"], "");
+    assert!(out.status.success() && out.stdout.is_empty() && out.stderr.is_empty());
+    let out = piaffe(&["-q", "optimize", "trot", "--speed", "0.6", "--starts", "1", "--json", "-"], "");
+    assert!(serde_json::from_slice::<Value>(&out.stdout).unwrap()["cost"].is_f64());
+    let out = piaffe(&["export", "/nonexistent.json", "--format", "csv", "--quiet"], "");
+    assert!(text(&out.stderr).contains("cannot read /nonexistent.json"));
+}
+
+#[test]
+fn a_reader_that_has_seen_enough_is_no_failure() {
+    let run =
+        format!("{} optimize trot --speed 0.6 --starts 1 --json /dev/null | head -n 1", env!("CARGO_BIN_EXE_piaffe"));
+    let out = Command::new("sh").args(["-c", &run]).output().unwrap();
+    assert!(text(&out.stdout).starts_with("trot") && out.stderr.is_empty(), "{}", text(&out.stderr));
+}
+
+#[test]
+fn shells_and_man_know_every_command() {
+    let help = text(&piaffe(&["--help"], "").stdout);
+    let bash = text(&piaffe(&["completions", "bash"], "").stdout);
+    let folder = tempfile::tempdir().unwrap();
+    assert!(piaffe(&["manual", "--out", folder.path().to_str().unwrap()], "").status.success());
+    for command in ["dynamics", "optimize", "report", "export", "sweep"] {
+        assert!(help.contains(command) && bash.contains(command));
+        let page = std::fs::read_to_string(folder.path().join(format!("piaffe-{command}.1"))).unwrap();
+        assert!(page.contains(".SH SYNOPSIS"), "{command}");
+    }
+    assert!(help.contains("Exit codes") && help.contains("Examples"));
+}
+
+#[test]
+fn an_interrupted_job_leaves_whole_files() {
+    for delay in [50, 250, 600] {
+        let folder = tempfile::tempdir().unwrap();
+        let mut job = Command::new(env!("CARGO_BIN_EXE_piaffe"))
+            .args(["--quiet", "--out", folder.path().to_str().unwrap()])
+            .spawn()
+            .unwrap();
+        std::thread::sleep(std::time::Duration::from_millis(delay));
+        let _ = job.kill();
+        job.wait().unwrap();
+        for file in std::fs::read_dir(folder.path()).unwrap().map(|f| f.unwrap().path()) {
+            if file.extension().is_some_and(|e| e == "json") {
+                let text = std::fs::read_to_string(&file).unwrap();
+                assert!(serde_json::from_str::<Value>(&text).unwrap()["status"].is_string(), "{}", file.display());
+            }
+        }
+    }
+}

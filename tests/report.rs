@@ -154,7 +154,10 @@ fn the_page_needs_nothing_else_and_fits_desk_and_phone() {
             })",
         );
         assert_eq!(flaws, serde_json::json!([]), "{name}");
-        b.eval("document.querySelector('section.walk').scrollIntoView({ behavior: 'instant' })");
+        // A moment in the middle of a swing.
+        let show = "document.querySelector(\"TROT\").scrollIntoView({ behavior: 'instant' });
+            const s = document.querySelector(\"TROT .time\"); s.value = 230; s.dispatchEvent(new Event('input'))";
+        b.eval(&show.replace("TROT", TROT));
         keep(&mut b, name);
     }
 }

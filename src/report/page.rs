@@ -133,14 +133,15 @@ fn overview(report: &Report) -> Markup {
 }
 
 fn table(report: &Report) -> Markup {
+    // Of a sweep the figures say it; the table is for looking up.
     html! {
-        div.scroll { table {
+        details open[report.atlas.is_none()] { summary { "All results" } div.scroll { table {
             thead { tr {
                 th { "gait" } th { "least" } th.n { "speed, m/s" } th.n { "cost" } th.n { "half steps, s" } th.n { "step length, m" }
                 th.n { "violation" } th.n { "cycle error" } th.n { "KKT residual" } th { "receipt" }
             } }
             tbody { @for r in &report.results { (row(report, r)) } }
-        } }
+        } } }
     }
 }
 
@@ -152,7 +153,7 @@ fn row(report: &Report, r: &GaitResult) -> Markup {
         tr {
             td { @if shown { a href=(format!("#{}", r.name())) { (name) } } @else { (name) } }
             td { (r.criterion.name()) }
-            td.n { (r.speed) }
+            td.n { (format!("{}", (r.speed * 1e4).round() / 1e4)) }
             @if let (Some(cost), Some(receipt)) = (r.cost, &r.receipt) {
                 td.n { b { (format!("{cost:.4}")) } " " (r.criterion.unit()) }
                 td.n { (durations.join(" / ")) }

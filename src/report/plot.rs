@@ -234,7 +234,14 @@ fn draw_limit(scene: &mut Scene, limit: &Limit, [x, y]: [Scale; 2], named: &mut 
     }
     let clamped: Vec<Xy> = points.iter().map(|p| [p[0], p[1].clamp(top, bottom)]).collect();
     scene.line(&clamped, Pen::new(Ink::Limit, 1.2).dash(Dash::Dashed));
-    let Some(end) = clamped.last() else { return };
+    let (Some(start), Some(end)) = (clamped.first(), clamped.last()) else { return };
+    if start[0] == end[0] {
+        // Beside an upright line, on its wider side.
+        let right = end[0] - x.range[0] < x.range[1] - end[0];
+        let (shift, anchor) = if right { (4.0, Anchor::Start) } else { (-4.0, Anchor::End) };
+        scene.text([end[0] + shift, top + 9.0], &limit.name, 10.0, anchor, Ink::Limit);
+        return;
+    }
     let height = if end[1] < top + 14.0 { end[1] + 12.0 } else { end[1] - 4.0 };
     let taken = named.iter().any(|other| (other - height).abs() < 12.0);
     let (at, anchor) = if taken { (x.range[0] + 3.0, Anchor::Start) } else { (x.range[1] - 3.0, Anchor::End) };

@@ -1,0 +1,22 @@
+//! What a trot costs at several speeds, each optimum starting from the one before: `cargo run --release --example sweep`.
+
+use piaffe::cycle::Cycle;
+use piaffe::gaits::trot::Trot;
+use piaffe::motion::Criterion;
+use piaffe::search::multi_start::{Settings, search_from};
+
+fn main() {
+    let mut before: Vec<Vec<f64>> = Vec::new();
+    for speed in [0.3, 0.45, 0.6, 0.75, 0.9] {
+        let found = search_from(&Trot, Criterion::Energy, speed, &Settings { starts: 2, seed: 1 }, &before, &|_| {});
+        let Some(best) = found.optima.first() else {
+            println!("{speed} m/s: no trot");
+            continue;
+        };
+        println!(
+            "{speed} m/s: {:.3} N, half step {:.3} s",
+            best.local.costs.energy, best.local.motion.half_steps[0].duration
+        );
+        before = vec![Cycle::new(&Trot, Criterion::Energy, speed).theta(&best.local.motion)];
+    }
+}
