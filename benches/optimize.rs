@@ -4,7 +4,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use piaffe::gaits::GAITS;
 use piaffe::motion;
 use piaffe::result::GRID;
-use piaffe::search::local::descend;
+use piaffe::search::local::Task;
 use piaffe::search::multi_start::start;
 use piaffe::sqp::Control;
 use piaffe::verify::verify;
@@ -19,7 +19,8 @@ fn optimize(c: &mut Criterion) {
             group.bench_function(name, |b| {
                 b.iter(|| {
                     let theta = start(*gait, criterion, 0.6, 1, 0);
-                    let local = descend(*gait, criterion, 0.6, black_box(&theta), &mut |_| Control::Continue);
+                    let local = Task { gait: *gait, criterion, speed: 0.6 }
+                        .descend(black_box(&theta), &mut |_| Control::Continue);
                     verify(gait.description(), &local.motion, 0.6, GRID)
                 });
             });

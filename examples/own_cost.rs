@@ -6,57 +6,32 @@ use piaffe::gaits::trot::Trot;
 use piaffe::motion::Criterion;
 use piaffe::search::local::options;
 use piaffe::search::multi_start::start;
-use piaffe::sqp::{Control, Problem, Undefined, Values, minimize};
+use piaffe::sqp::{Control, Objective, Redirected, minimize};
 
-/// `cycle` with `weight · (T − wanted)²` added to what is minimized. T is the last variable of a mirrored gait.
-struct Paced<'a> {
-    cycle: Cycle<'a>,
+/// `weight · (T − wanted)²` on top. T is the last variable of a mirrored gait.
+struct Pace {
     weight: f64,
     wanted: f64,
-    /// T − wanted at the linearized point.
-    gap: f64,
 }
 
-impl Problem for Paced<'_> {
-    fn variables(&self) -> usize {
-        self.cycle.variables()
+impl Pace {
+    fn gap(&self, x: &[f64]) -> f64 {
+        x[x.len() - 1] - self.wanted
     }
-    fn equalities(&self) -> usize {
-        self.cycle.equalities()
+}
+
+impl Objective for Pace {
+    fn value(&self, x: &[f64], own: f64) -> f64 {
+        own + self.weight * self.gap(x).powi(2)
     }
-    fn inequalities(&self) -> usize {
-        self.cycle.inequalities()
+
+    fn gradient(&self, x: &[f64], gradient: &mut [f64]) {
+        gradient[x.len() - 1] += 2.0 * self.weight * self.gap(x);
     }
-    fn bounds(&self, lower: &mut [f64], upper: &mut [f64]) {
-        self.cycle.bounds(lower, upper);
-    }
-    fn evaluate(&mut self, x: &[f64], out: &mut Values) -> Result<(), Undefined> {
-        self.cycle.evaluate(x, out)?;
-        out.objective += self.weight * (x[x.len() - 1] - self.wanted).powi(2);
-        Ok(())
-    }
-    fn linearize(&mut self, x: &[f64]) -> Result<(), Undefined> {
-        self.gap = x[x.len() - 1] - self.wanted;
-        self.cycle.linearize(x)
-    }
-    fn gradient(&self, gradient: &mut [f64]) {
-        self.cycle.gradient(gradient);
-        gradient[self.variables() - 1] += 2.0 * self.weight * self.gap;
-    }
-    fn equality_row(&self, i: usize, row: &mut [f64]) {
-        self.cycle.equality_row(i, row);
-    }
-    fn inequality_row(&self, i: usize, row: &mut [f64]) {
-        self.cycle.inequality_row(i, row);
-    }
-    fn inequality_directions(&self, d: &[f64], out: &mut [f64]) {
-        self.cycle.inequality_directions(d, out);
-    }
-    fn hessian(&mut self, equalities: &[f64], inequalities: &[f64], hessian: &mut [f64]) -> bool {
-        let exact = self.cycle.hessian(equalities, inequalities, hessian);
-        if let Some(corner) = hessian.last_mut() {
-            *corner += 2.0 * self.weight;
-        }
+
+    fn hessian(&self, _: &[f64], own: &mut dyn FnMut(&mut [f64]) -> bool, hessian: &mut [f64]) -> bool {
+        let exact = own(hessian);
+        hessian[hessian.len() - 1] += 2.0 * self.weight;
         exact
     }
 }
@@ -65,16 +40,16 @@ fn main() {
     let (criterion, speed) = (Criterion::Torque, 0.6);
     let from = start(&Trot, criterion, speed, 1, 0);
     for weight in [0.0, 1e3, 1e5] {
-        let cycle = Cycle::new(&Trot, criterion, speed);
+        let mut cycle = Cycle::new(&Trot, criterion, speed);
         let options = options(&cycle);
-        let mut problem = Paced { cycle, weight, wanted: 0.35, gap: 0.0 };
+        let mut problem = Redirected::new(&mut cycle, Pace { weight, wanted: 0.35 });
         let solution = minimize(&mut problem, &from, &options, &mut |_| Control::Continue);
         let duration = solution.x[solution.x.len() - 1];
-        if problem.cycle.simulate(&solution.x).is_err() {
+        if cycle.simulate(&solution.x).is_err() {
             println!("weight {weight}: no such walk");
             continue;
         }
-        println!("weight {weight}: half step {duration:.4} s, torque {:.3} N²·m·s", problem.cycle.costs().torque);
+        println!("weight {weight}: half step {duration:.4} s, torque {:.3} N²·m·s", cycle.costs().torque);
         assert!(solution.status.is_optimal());
     }
 }

@@ -6,7 +6,7 @@ use piaffe::gaits::GAITS;
 use piaffe::model::Gait;
 use piaffe::motion::Criterion;
 use piaffe::result::{GaitResult, Status};
-use piaffe::search::local::{Local, descend};
+use piaffe::search::local::{Local, Task};
 use piaffe::search::multi_start::{Found, Optimum, start};
 use piaffe::sqp::Control;
 use rayon::prelude::*;
@@ -41,7 +41,7 @@ fn most_random_starts_end_in_an_optimum() {
             .into_par_iter()
             .map(|k| {
                 let theta = start(gait, criterion, SPEED, 1, k);
-                let local = descend(gait, criterion, SPEED, &theta, &mut |_| Control::Continue);
+                let local = Task { gait, criterion, speed: SPEED }.descend(&theta, &mut |_| Control::Continue);
                 let result = result(gait, criterion, &local);
                 (local, result)
             })

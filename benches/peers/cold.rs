@@ -8,7 +8,7 @@ use piaffe::gaits::GAITS;
 use piaffe::model::{Description, Rotation};
 use piaffe::motion::Criterion;
 use piaffe::result::GRID;
-use piaffe::search::local::descend;
+use piaffe::search::local::Task;
 use piaffe::search::multi_start::start;
 use piaffe::sqp::Control;
 use piaffe::verify::verify;
@@ -34,7 +34,7 @@ fn answer(line: &str) -> Option<Value> {
 
     let started = Instant::now();
     let theta = start(gait, criterion, speed, 1, 0);
-    let local = descend(gait, criterion, speed, &theta, &mut |_| Control::Continue);
+    let local = Task { gait, criterion, speed }.descend(&theta, &mut |_| Control::Continue);
     let receipt = verify(gait.description(), &local.motion, speed, GRID);
     let seconds = started.elapsed().as_secs_f64();
 

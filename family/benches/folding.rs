@@ -5,7 +5,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use piaffe::gaits::GAITS;
 use piaffe::model::Gait;
 use piaffe::motion::Criterion::Energy;
-use piaffe::search::{local::descend, multi_start::start};
+use piaffe::search::{local::Task, multi_start::start};
 use piaffe::sqp::Control;
 use piaffe_family::FAMILIES;
 use std::hint::black_box;
@@ -39,7 +39,9 @@ fn folding(c: &mut Criterion) {
             });
             group.sample_size(10).bench_function(format!("one descent, {how}"), |b| {
                 let theta = start(gait, Energy, 0.6, 1, 0);
-                b.iter(|| descend(gait, Energy, 0.6, black_box(&theta), &mut |_| Control::Continue));
+                b.iter(|| {
+                    Task { gait, criterion: Energy, speed: 0.6 }.descend(black_box(&theta), &mut |_| Control::Continue)
+                });
             });
         }
         group.finish();

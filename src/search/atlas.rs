@@ -4,7 +4,7 @@
 //! found there is carried to the neighbours until nothing improves.
 
 use super::journal::{Journal, common, step};
-use super::local::follow;
+use super::local::Task;
 use super::multi_start::{Settings, search_from};
 use crate::cycle::Cycle;
 use crate::model::Gait;
@@ -99,7 +99,7 @@ fn carry(
         let name = format!("{} {} {speed} carried to", gait.description().key, criterion.name());
         let inputs = (common(gait, settings), &point.local_optima, &theta);
         let (changed, fresh) = step(journal, &name, &inputs, || {
-            let local = follow(gait, criterion, speed, &theta, &mut |_| Control::Continue);
+            let local = Task { gait, criterion, speed }.follow(&theta, &mut |_| Control::Continue);
             let mut result = point.clone();
             result.join(gait, &local).then_some(result)
         });

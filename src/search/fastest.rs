@@ -2,7 +2,7 @@
 
 use super::atlas::{search_at, theta};
 use super::journal::{Journal, common, step};
-use super::local::{Conflict, Local, descend, follow};
+use super::local::{Conflict, Local, Task};
 use super::multi_start::{Settings, start};
 use crate::model::Gait;
 use crate::motion::Criterion;
@@ -87,8 +87,9 @@ impl MaximumSpeed {
 ///
 /// Feasibility does not depend on the criterion; the smooth one is quicker.
 fn attempt(gait: &dyn Gait, speed: f64, from: Option<&[f64]>, settings: &Settings) -> Local {
-    let of = |theta: &[f64]| descend(gait, Criterion::Torque, speed, theta, &mut |_| Control::Continue);
-    let mut best = from.map(|theta| follow(gait, Criterion::Torque, speed, theta, &mut |_| Control::Continue));
+    let task = Task { gait, criterion: Criterion::Torque, speed };
+    let of = |theta: &[f64]| task.descend(theta, &mut |_| Control::Continue);
+    let mut best = from.map(|theta| task.follow(theta, &mut |_| Control::Continue));
     for k in 0..settings.starts {
         if best.as_ref().is_some_and(|b| b.status.is_optimal()) {
             break;

@@ -11,6 +11,14 @@ use crate::sqp::{self, Control, KktResidual, Options, Solution, Status};
 const DENSE: f64 = 1e-7;
 const ROUNDS: usize = 20;
 
+/// What is asked for: the cheapest motion of a gait at a mean speed (m/s).
+#[derive(Clone, Copy)]
+pub struct Task<'a> {
+    pub gait: &'a dyn Gait,
+    pub criterion: Criterion,
+    pub speed: f64,
+}
+
 /// Where a descent ended.
 #[derive(Clone, Debug)]
 pub struct Local {
@@ -58,100 +66,80 @@ fn rough(options: &Options) -> Options {
     Options { tolerance: 1e-2, feasibility: 1e-3, ..options.clone() }
 }
 
-/// Minimizes from `start`, which may be far from any motion: the nearest motion first, then an approximate optimum on a
-/// coarse mesh, then the optimum. `observe` sees every iteration and can stop it.
-pub fn descend(
-    gait: &dyn Gait,
-    criterion: Criterion,
-    speed: f64,
-    start: &[f64],
-    observe: &mut dyn FnMut(&sqp::Iteration) -> Control,
-) -> Local {
-    let mut cycle = Cycle::with_elements(gait, criterion, speed, elements(gait.description()) / 2);
-    let options = options(&cycle);
-    let nearest = nearest(&mut cycle, start, &options, observe);
-    let local = approach(cycle, &nearest.x, &options, observe);
-    Local { iterations: nearest.iterations + local.iterations, ..local }
-}
+/// Called at every iteration; can stop the search.
+type Observer<'o> = &'o mut dyn FnMut(&sqp::Iteration) -> Control;
 
-/// Minimizes from `start` at once and with steps of any length. It gets lost more often than [`descend`], and ends in optima
-/// that [`descend`] never sees.
-pub fn plunge(
-    gait: &dyn Gait,
-    criterion: Criterion,
-    speed: f64,
-    start: &[f64],
-    observe: &mut dyn FnMut(&sqp::Iteration) -> Control,
-) -> Local {
-    let cycle = Cycle::new(gait, criterion, speed);
-    let options = Options { step_limit: f64::INFINITY, ..options(&cycle) };
-    approach(cycle, start, &options, observe)
-}
-
-/// An approximate optimum of `cycle`, then the optimum.
-fn approach(
-    mut cycle: Cycle,
-    start: &[f64],
-    options: &Options,
-    observe: &mut dyn FnMut(&sqp::Iteration) -> Control,
-) -> Local {
-    let (gait, criterion, speed) = (cycle.gait(), cycle.criterion, cycle.speed);
-    let (mut theta, mut iterations) = (start.to_vec(), 0);
-    let smoothing: &[f64] = match criterion {
-        Criterion::Energy => &SMOOTHING,
-        Criterion::Torque => &[0.0],
-    };
-    for share in smoothing {
-        let d = gait.description();
-        cycle.smoothing = share * d.total_mass() * d.gravity * speed;
-        let solution = sqp::minimize(&mut cycle, &theta, &rough(options), observe);
-        iterations += solution.iterations;
-        theta = solution.x;
+impl Task<'_> {
+    /// Minimizes from `start`, which may be far from any motion: the nearest motion first, then an approximate optimum on
+    /// a coarse mesh, then the optimum.
+    pub fn descend(&self, start: &[f64], observe: Observer) -> Local {
+        let coarse = elements(self.gait.description()) / 2;
+        let mut cycle = Cycle::with_elements(self.gait, self.criterion, self.speed, coarse);
+        let options = options(&cycle);
+        let nearest = nearest(&mut cycle, start, &options, observe);
+        let local = self.approach(cycle, &nearest.x, &options, observe);
+        Local { iterations: nearest.iterations + local.iterations, ..local }
     }
-    let local = polish(gait, criterion, speed, &theta, observe);
-    Local { iterations: iterations + local.iterations, ..local }
-}
 
-/// Minimizes from the optimum of a neighbouring problem: directly, or as from anywhere if that leads nowhere.
-pub fn follow(
-    gait: &dyn Gait,
-    criterion: Criterion,
-    speed: f64,
-    start: &[f64],
-    observe: &mut dyn FnMut(&sqp::Iteration) -> Control,
-) -> Local {
-    let local = polish(gait, criterion, speed, start, observe);
-    if matches!(local.status, Status::Optimal | Status::Stopped) {
-        return local;
+    /// Minimizes from `start` at once and with steps of any length. It gets lost more often than [`Task::descend`], and ends
+    /// in optima that [`Task::descend`] never sees.
+    pub fn plunge(&self, start: &[f64], observe: Observer) -> Local {
+        let cycle = self.cycle();
+        let options = Options { step_limit: f64::INFINITY, ..options(&cycle) };
+        self.approach(cycle, start, &options, observe)
     }
-    descend(gait, criterion, speed, start, observe)
-}
 
-/// The optimum near `start`, with constraints imposed between nodes where they dip.
-fn polish(
-    gait: &dyn Gait,
-    criterion: Criterion,
-    speed: f64,
-    start: &[f64],
-    observe: &mut dyn FnMut(&sqp::Iteration) -> Control,
-) -> Local {
-    let mut cycle = Cycle::new(gait, criterion, speed);
-    let mut fine = probe(&cycle);
-    let options = options(&cycle);
-    let mut solution = sqp::minimize(&mut cycle, start, &options, observe);
-    let mut iterations = solution.iterations;
-    let mut violation = f64::INFINITY;
-    for _ in 0..ROUNDS {
-        let Ok(found) = dips(&mut fine, &solution.x) else { break };
-        violation = found.violation;
-        if !solution.status.is_optimal() || violation <= DENSE || cycle.simulate(&solution.x).is_err() {
-            break;
+    /// Minimizes from the optimum of a neighbouring problem: directly, or as from anywhere if that leads nowhere.
+    pub fn follow(&self, start: &[f64], observe: Observer) -> Local {
+        let local = self.polish(start, observe);
+        if matches!(local.status, Status::Optimal | Status::Stopped) {
+            return local;
         }
-        found.impose(&mut cycle);
-        solution = sqp::minimize(&mut cycle, &solution.x, &options, observe);
-        iterations += solution.iterations;
+        self.descend(start, observe)
     }
-    finish(&mut cycle, solution, violation, iterations)
+
+    fn cycle(&self) -> Cycle<'_> {
+        Cycle::new(self.gait, self.criterion, self.speed)
+    }
+
+    /// An approximate optimum of `cycle`, then the optimum.
+    fn approach(&self, mut cycle: Cycle, start: &[f64], options: &Options, observe: Observer) -> Local {
+        let (mut theta, mut iterations) = (start.to_vec(), 0);
+        let smoothing: &[f64] = match self.criterion {
+            Criterion::Energy => &SMOOTHING,
+            Criterion::Torque => &[0.0],
+        };
+        for share in smoothing {
+            let d = self.gait.description();
+            cycle.smoothing = share * d.total_mass() * d.gravity * self.speed;
+            let solution = sqp::minimize(&mut cycle, &theta, &rough(options), observe);
+            iterations += solution.iterations;
+            theta = solution.x;
+        }
+        let local = self.polish(&theta, observe);
+        Local { iterations: iterations + local.iterations, ..local }
+    }
+
+    /// The optimum near `start`, with constraints imposed between nodes where they dip.
+    fn polish(&self, start: &[f64], observe: Observer) -> Local {
+        let mut cycle = self.cycle();
+        let mut fine = probe(&cycle);
+        let options = options(&cycle);
+        let mut solution = sqp::minimize(&mut cycle, start, &options, observe);
+        let mut iterations = solution.iterations;
+        let mut violation = f64::INFINITY;
+        for _ in 0..ROUNDS {
+            let Ok(found) = dips(&mut fine, &solution.x) else { break };
+            violation = found.violation;
+            if !solution.status.is_optimal() || violation <= DENSE || cycle.simulate(&solution.x).is_err() {
+                break;
+            }
+            found.impose(&mut cycle);
+            solution = sqp::minimize(&mut cycle, &solution.x, &options, observe);
+            iterations += solution.iterations;
+        }
+        finish(&mut cycle, solution, violation, iterations)
+    }
 }
 
 fn finish(cycle: &mut Cycle, solution: Solution, violation: f64, iterations: usize) -> Local {

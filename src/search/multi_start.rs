@@ -1,7 +1,7 @@
 //! Many starts, all local optima: in parallel, with the same result for any number of threads.
 
 use super::guess::{Plan, walk};
-use super::local::{Local, descend, follow, plunge};
+use super::local::{Local, Task};
 use crate::cycle::Cycle;
 use crate::model::Gait;
 use crate::motion::Criterion;
@@ -66,17 +66,18 @@ pub fn search_from(
     neighbours: &[Vec<f64>],
     done: &(dyn Fn(usize) + Sync),
 ) -> Found {
+    let task = Task { gait, criterion, speed };
     let locals: Vec<Local> = (0..neighbours.len() + settings.starts.max(1))
         .into_par_iter()
         .map(|k| {
             let local = match neighbours.get(k) {
-                Some(theta) => follow(gait, criterion, speed, theta, &mut |_| Control::Continue),
+                Some(theta) => task.follow(theta, &mut |_| Control::Continue),
                 None => {
                     // Every second start plunges: what is found must not depend on one way of beginning.
                     let k = k - neighbours.len();
                     let theta = start(gait, criterion, speed, settings.seed, k);
-                    let way = if k % 2 == 1 { plunge } else { descend };
-                    way(gait, criterion, speed, &theta, &mut |_| Control::Continue)
+                    let way = if k % 2 == 1 { Task::plunge } else { Task::descend };
+                    way(&task, &theta, &mut |_| Control::Continue)
                 }
             };
             done(k);

@@ -6,7 +6,7 @@
 //! almost is a motion: a few steps of Gauss and Newton, which need no second derivatives.
 
 use crate::cycle::Cycle;
-use crate::sqp::{Control, Iteration, Options, Problem, Solution, Undefined, Values, minimize};
+use crate::sqp::{Control, Iteration, Objective, Options, Redirected, Solution, minimize};
 
 /// Violation (scaled) that is left to the descent.
 const VIOLATION: f64 = 0.05;
@@ -23,67 +23,30 @@ pub fn nearest(
     let weights = cycle.scale().iter().map(|s| 1.0 / (s * s)).collect();
     let options =
         Options { tolerance: f64::INFINITY, feasibility: VIOLATION, iteration_limit: LIMIT, ..options.clone() };
-    minimize(&mut Distance { cycle, from: start.to_vec(), at: start.to_vec(), weights }, start, &options, observe)
+    let distance = Distance { from: start.to_vec(), weights };
+    minimize(&mut Redirected::new(cycle, distance), start, &options, observe)
 }
 
-/// The constraints of a cycle, with half the weighted square of the distance as the objective.
-struct Distance<'c, 'a> {
-    cycle: &'c mut Cycle<'a>,
+/// Half the weighted square of the distance.
+struct Distance {
     from: Vec<f64>,
-    /// Where it is linearized.
-    at: Vec<f64>,
     weights: Vec<f64>,
 }
 
-impl Problem for Distance<'_, '_> {
-    fn variables(&self) -> usize {
-        self.cycle.variables()
-    }
-
-    fn equalities(&self) -> usize {
-        self.cycle.equalities()
-    }
-
-    fn inequalities(&self) -> usize {
-        self.cycle.inequalities()
-    }
-
-    fn bounds(&self, lower: &mut [f64], upper: &mut [f64]) {
-        self.cycle.bounds(lower, upper);
-    }
-
-    fn evaluate(&mut self, x: &[f64], out: &mut Values) -> Result<(), Undefined> {
-        self.cycle.evaluate(x, out)?;
+impl Objective for Distance {
+    fn value(&self, x: &[f64], _: f64) -> f64 {
         let square = |((x, from), weight): ((&f64, &f64), &f64)| weight * (x - from) * (x - from);
-        out.objective = 0.5 * x.iter().zip(&self.from).zip(&self.weights).map(square).sum::<f64>();
-        Ok(())
+        0.5 * x.iter().zip(&self.from).zip(&self.weights).map(square).sum::<f64>()
     }
 
-    fn linearize(&mut self, x: &[f64]) -> Result<(), Undefined> {
-        self.at.copy_from_slice(x);
-        self.cycle.linearize(x)
-    }
-
-    fn gradient(&self, gradient: &mut [f64]) {
-        for (((g, x), from), weight) in gradient.iter_mut().zip(&self.at).zip(&self.from).zip(&self.weights) {
+    fn gradient(&self, x: &[f64], gradient: &mut [f64]) {
+        for (((g, x), from), weight) in gradient.iter_mut().zip(x).zip(&self.from).zip(&self.weights) {
             *g = weight * (x - from);
         }
     }
 
-    fn equality_row(&self, i: usize, row: &mut [f64]) {
-        self.cycle.equality_row(i, row);
-    }
-
-    fn inequality_row(&self, i: usize, row: &mut [f64]) {
-        self.cycle.inequality_row(i, row);
-    }
-
-    fn inequality_directions(&self, d: &[f64], out: &mut [f64]) {
-        self.cycle.inequality_directions(d, out);
-    }
-
     /// Of the distance alone.
-    fn hessian(&mut self, _: &[f64], _: &[f64], hessian: &mut [f64]) -> bool {
+    fn hessian(&self, _: &[f64], _: &mut dyn FnMut(&mut [f64]) -> bool, hessian: &mut [f64]) -> bool {
         hessian.fill(0.0);
         for (diagonal, weight) in hessian.iter_mut().step_by(self.weights.len() + 1).zip(&self.weights) {
             *diagonal = *weight;

@@ -52,6 +52,7 @@ mod eigen;
 mod kkt;
 mod merit;
 mod minimize;
+mod objective;
 mod options;
 mod problem;
 pub mod qp;
@@ -63,6 +64,7 @@ mod status;
 mod trial;
 
 pub use minimize::minimize;
+pub use objective::{Objective, Redirected};
 pub use options::{Control, Iteration, Kind, Options, Subproblems};
 pub use problem::{Problem, Undefined, Values};
 pub use status::{Conflict, KktResidual, Solution, Status};
