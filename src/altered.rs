@@ -1,5 +1,6 @@
 //! A gait with some numbers changed that its dynamics do not contain: limits, ranges, the polynomials' order.
 
+use crate::model::whole::Whole;
 use crate::model::{Description, Gait};
 
 /// The generated dynamics of a gait under another description.
@@ -45,6 +46,10 @@ impl Gait for Altered<'_> {
 
     fn latex(&self) -> &'static str {
         self.gait.latex()
+    }
+
+    fn whole(&self) -> Option<&'static dyn Whole> {
+        self.gait.whole()
     }
 
     delegate! {

@@ -6,6 +6,7 @@
 //! frames and units: X = [p, q], world axes Xf forward, Yf up, Zf to the right; SI.
 
 pub mod family;
+pub mod whole;
 
 use std::borrow::Cow;
 
@@ -236,6 +237,10 @@ pub trait Gait: Sync {
     fn description(&self) -> &Description;
     /// The closed forms of eq. 2–5, 8 and 9 with the names of the robot's parameters: a LaTeX document.
     fn latex(&self) -> &'static str;
+    /// The real robot that the virtual legs stand for. Members of families have none: it is generated with numbers.
+    fn whole(&self) -> Option<&'static dyn whole::Whole> {
+        None
+    }
 
     /// A(q): n × n.
     fn inertia(&self, q: &[f64], out: &mut [f64]);

@@ -1,7 +1,7 @@
 //! The cargo façade: the one place that reads the environment, writes files and prints.
 
 use crate::emit;
-use crate::mechanism::{Family, Mechanism, select};
+use crate::mechanism::{Family, Mechanism, Whole, select};
 use crate::spec::{self, Diagnostic, Gait, Robot};
 use crate::typeset::latex;
 use sha2::{Digest, Sha256};
@@ -159,13 +159,22 @@ fn entries(root: &Path, folder: &Path) -> Result<Vec<PathBuf>, String> {
 pub fn generate(robots: &[RobotFiles], runtime: Option<&str>) -> Result<Vec<Generated>, String> {
     let parsed = parse(robots)?;
     let mut files = for_each_gait(&parsed, |robot, gait, origin| {
-        let locked = robot.spec.locked(&gait.locked).map_err(|t| format!("`{}` is tilted", t.joint))?;
-        let mechanism = Mechanism::new(&locked, gait);
+        let (module, mechanism) = (&robot.files.module, Mechanism::new(&locked(&robot.spec, &gait.locked)?, gait));
         let latex = latex(&robot.spec, gait, &mechanism);
-        let source = emit::gait_source(&mechanism, &robot.files.module, &latex, runtime, origin)?;
-        Ok((emit::file_name(&robot.files.module, &gait.name), source))
+        let whole = robot.wholes().iter().position(|angles| **angles == gait.locked).unwrap_or_default();
+        let source = emit::gait_source(&mechanism, module, &emit::whole_module(whole), &latex, runtime, origin)?;
+        Ok((emit::file_name(module, &gait.name), source))
     })?;
-    files.push(("gaits.rs".into(), emit::registry_source(&modules(&parsed), runtime, &origin_of_all(robots))));
+    for robot in &parsed {
+        for (number, angles) in robot.wholes().into_iter().enumerate() {
+            let whole = Whole::new(&locked(&robot.spec, angles)?);
+            let source = emit::whole_source(&whole, runtime, &origin(&[&robot.files.robot]))?;
+            files.push((emit::whole_file_name(&robot.files.module, number), source));
+        }
+    }
+    let wholes: Vec<usize> = parsed.iter().map(|robot| robot.wholes().len()).collect();
+    let registry = emit::registry_source(&modules(&parsed), &wholes, runtime, &origin_of_all(robots));
+    files.push(("gaits.rs".into(), registry));
     Ok(files)
 }
 
@@ -198,6 +207,26 @@ struct Parsed<'f> {
     files: &'f RobotFiles,
     spec: Robot,
     gaits: Vec<(Gait, String)>,
+}
+
+impl Parsed<'_> {
+    /// The different ways in which the gaits lock joints: for each there is a whole robot.
+    fn wholes(&self) -> Vec<&Angles> {
+        let mut different: Vec<&Angles> = Vec::new();
+        for (gait, _) in &self.gaits {
+            if !different.contains(&&gait.locked) {
+                different.push(&gait.locked);
+            }
+        }
+        different
+    }
+}
+
+/// Joints by name, with the angles at which they are held, rad.
+type Angles = Vec<(String, f64)>;
+
+fn locked(robot: &Robot, angles: &Angles) -> Result<Robot, String> {
+    robot.locked(angles).map_err(|t| format!("`{}` is tilted", t.joint))
 }
 
 fn parse(robots: &[RobotFiles]) -> Result<Vec<Parsed<'_>>, String> {

@@ -3,9 +3,9 @@
 //! A frame is a base rotation followed by one turn about one axis. Joints about the same axis add
 //! up to one absolute angle, so a planar chain has one sine and cosine per link and no products.
 
-use super::quantities::Quantities;
+use super::quantities::{BodyQuantities, Quantities};
 use crate::expr::{Poly, Ring, Var};
-use crate::mechanism::Mechanism;
+use crate::mechanism::{Body, Mechanism};
 use crate::spec::{Axis, Rotation};
 
 pub type Vec3 = [Poly; 3];
@@ -21,7 +21,7 @@ pub struct Coordinates {
 
 /// A body's place and motion relative to the platform's mass centre (position) and the world (spin).
 pub struct Placement {
-    /// Mass centre minus p, world axes.
+    /// Mass centre minus p, in the axes on which the tree is built (the world's).
     pub com: Vec3,
     /// Angular velocity in the body's own axes.
     pub spin: Vec3,
@@ -33,8 +33,9 @@ pub struct Kinematics {
     pub feet: [Vec3; 2],
 }
 
+/// The axes of a body.
 #[derive(Clone)]
-struct Frame {
+pub struct Frame {
     base: Mat3,
     /// Angular velocity of the base in its own axes.
     base_spin: Vec3,
@@ -66,7 +67,7 @@ impl Kinematics {
         coordinates: &Coordinates,
     ) -> Kinematics {
         let theta = coordinates.q.get(mechanism.joints.len()).map(|c| c[0]);
-        let mut platform = Frame { base: identity(), base_spin: zero(), axis: Axis::Pitch, turn: Vec::new() };
+        let mut platform = Frame::base(zero());
         match mechanism.rotation {
             Rotation::None => {}
             Rotation::Pitch => platform.turn.extend(theta),
@@ -75,25 +76,47 @@ impl Kinematics {
                 platform.turn.extend(theta);
             }
         }
-        let mut frames: Vec<(Frame, Vec3)> = Vec::new();
-        let mut bodies = Vec::new();
-        for (body, numbers) in mechanism.bodies.iter().zip(&quantities.bodies) {
+        let tree = Tree::new(ring, platform, &mechanism.bodies, &quantities.bodies, &coordinates.q);
+        let feet = [0, 1].map(|k| tree.point(ring, mechanism.legs[k].foot_body, &quantities.feet[k]));
+        Kinematics { bodies: tree.bodies, feet }
+    }
+}
+
+/// Bodies that hang on each other.
+pub struct Tree {
+    pub bodies: Vec<Placement>,
+    /// Axes and joint of each.
+    frames: Vec<(Frame, Vec3)>,
+}
+
+impl Tree {
+    /// The tree on a platform with these axes; body 0 is the platform. Joints turn by the first of `q`'s symbols.
+    pub fn new(
+        ring: &mut Ring,
+        platform: Frame,
+        bodies: &[Body],
+        quantities: &[BodyQuantities],
+        q: &[[Var; 3]],
+    ) -> Tree {
+        let mut tree = Tree { bodies: Vec::new(), frames: Vec::new() };
+        for (body, numbers) in bodies.iter().zip(quantities) {
             let (frame, joint) = match (body.parent, body.coordinate) {
                 (Some(parent), Some(coordinate)) => {
-                    let (above, origin) = frames[parent].clone();
-                    let joint = add(&origin, &rotate(&above.rotation(ring), &numbers.offset));
-                    (above.turned(ring, body.axis, coordinates.q[coordinate][0]), joint)
+                    let joint = tree.point(ring, parent, &numbers.offset);
+                    (tree.frames[parent].0.turned(ring, body.axis, q[coordinate][0]), joint)
                 }
                 _ => (platform.clone(), zero()),
             };
-            bodies.push(place(ring, &numbers.com, &frame, &joint));
-            frames.push((frame, joint));
+            tree.bodies.push(place(ring, &numbers.com, &frame, &joint));
+            tree.frames.push((frame, joint));
         }
-        let feet = [0, 1].map(|k| {
-            let (frame, joint) = &frames[mechanism.legs[k].foot_body];
-            add(joint, &rotate(&frame.rotation(ring), &quantities.feet[k]))
-        });
-        Kinematics { bodies, feet }
+        tree
+    }
+
+    /// Where the point of a body is that lies at `at` in its axes, from its joint.
+    pub fn point(&self, ring: &mut Ring, body: usize, at: &Vec3) -> Vec3 {
+        let (frame, joint) = &self.frames[body];
+        add(joint, &rotate(&frame.rotation(ring), at))
     }
 }
 
@@ -102,6 +125,11 @@ fn place(ring: &mut Ring, com: &Vec3, frame: &Frame, joint: &Vec3) -> Placement 
 }
 
 impl Frame {
+    /// Axes in which positions are given, which turn with this angular velocity (in these axes).
+    pub fn base(spin: Vec3) -> Frame {
+        Frame { base: identity(), base_spin: spin, axis: Axis::Pitch, turn: Vec::new() }
+    }
+
     fn rotation(&self, ring: &mut Ring) -> Mat3 {
         product(&self.base, &elementary(ring, self.axis, &self.turn))
     }

@@ -2,7 +2,7 @@
 //!
 //! `floating` holds the model in X = [p, q] (eq. 5), `stance` the one reduced to q by the stance foot
 //! (eq. 6, 8–10), `impact` the passive impacts (eq. 11, 12), `staging` what of eq. 8 and 9 can be
-//! evaluated before β is known. All follow Kane's form `Σ m ∂v/∂Ẋ·a + ∂ω/∂Ẋ·(Iω̇ + ω×Iω)`.
+//! evaluated before β is known; `whole` is the real robot, which has no gait. All follow Kane's form `Σ m ∂v/∂Ẋ·a + ∂ω/∂Ẋ·(Iω̇ + ω×Iω)`.
 
 mod closed_forms;
 mod curvature;
@@ -17,12 +17,14 @@ mod sensitivity;
 mod solve;
 mod staging;
 mod stance;
+mod whole;
 
 pub use closed_forms::{Equation, Section, closed_forms};
 pub use kernel::{Input, Kernel, Output, Shape};
 pub use lumps::{LUMPS, PARAMETERS};
 pub use model::Model;
 pub use quantities::{BodyQuantities, Quantities};
+pub use whole::whole_kernels;
 
 use crate::mechanism::{Family, Mechanism};
 use lumps::Lumps;

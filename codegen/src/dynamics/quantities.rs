@@ -25,6 +25,17 @@ pub struct BodyQuantities {
     pub inertia: [[Poly; 3]; 3],
 }
 
+impl BodyQuantities {
+    pub fn constant(body: &Body) -> BodyQuantities {
+        BodyQuantities {
+            offset: body.offset.map(Poly::constant),
+            mass: Poly::constant(body.mass),
+            com: body.com.map(Poly::constant),
+            inertia: body.inertia.map(|row| row.map(Poly::constant)),
+        }
+    }
+}
+
 impl Quantities {
     pub fn constant(mechanism: &Mechanism) -> Quantities {
         Quantities::new(mechanism, mechanism.numbers().into_iter().map(Poly::constant).collect())

@@ -11,12 +11,12 @@ pub(super) fn float(value: f64) -> TokenStream {
     if value.is_sign_negative() && value != 0.0 { quote!(-#literal) } else { quote!(#literal) }
 }
 
-fn floats(values: &[f64]) -> TokenStream {
+pub(super) fn floats(values: &[f64]) -> TokenStream {
     let values = values.iter().map(|v| float(*v));
     quote!([#(#values),*])
 }
 
-fn body(b: &Body, runtime: &TokenStream) -> TokenStream {
+pub(super) fn body(b: &Body, runtime: &TokenStream) -> TokenStream {
     let (name, axis) = (&b.name, b.axis.index());
     let (parent, coordinate) = (option(b.parent), option(b.coordinate));
     let (offset, mass, com) = (floats(&b.offset), float(b.mass), floats(&b.com));

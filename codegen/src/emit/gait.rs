@@ -10,14 +10,15 @@ use proc_macro2::TokenStream;
 use quote::quote;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Source of one gait's module, of a robot with or without a module of its own. `latex` are its
-/// closed forms, `runtime` is the path of the module with the `Gait` trait; without it there are functions only.
+/// Source of one gait's module, of a robot with or without a module of its own; `whole` is the module of the whole
+/// robot. `latex` are the gait's closed forms, `runtime` is the path of the module with the `Gait` trait; without it there are functions only.
 ///
 /// # Errors
 /// If what was generated is not Rust: a defect of the generator.
 pub fn gait_source(
     mechanism: &Mechanism,
     robot: &str,
+    whole: &str,
     latex: &str,
     runtime: Option<&str>,
     origin: &str,
@@ -26,7 +27,7 @@ pub fn gait_source(
     let functions: Vec<Function> = kernels.iter().map(|k| Function::new(&model.ring, k)).collect();
     let items = items(&functions);
     let gait = match runtime {
-        Some(runtime) => implementation(mechanism, &key(robot, &mechanism.gait), &functions, latex, runtime)?,
+        Some(runtime) => implementation(mechanism, &key(robot, &mechanism.gait), whole, &functions, latex, runtime)?,
         None => TokenStream::new(),
     };
     let file = quote! {
@@ -65,6 +66,7 @@ pub(super) fn written(file: TokenStream, origin: &str) -> Result<String, String>
 fn implementation(
     m: &Mechanism,
     key: &str,
+    whole: &str,
     functions: &[Function],
     latex: &str,
     runtime: &str,
@@ -73,6 +75,7 @@ fn implementation(
     let name = ident(&type_name(&m.gait));
     let doc = format!(" The {} of `{}`.", m.gait, m.robot);
     let description = description(m, key, functions, &runtime);
+    let whole = ident(whole);
     let methods = methods(functions);
     Ok(quote! {
         #[doc = #doc]
@@ -83,6 +86,7 @@ fn implementation(
         impl #runtime::Gait for #name {
             fn description(&self) -> &#runtime::Description { &DESCRIPTION }
             fn latex(&self) -> &'static str { #latex }
+            fn whole(&self) -> Option<&'static dyn #runtime::whole::Whole> { Some(&super::#whole::Whole) }
             #methods
         }
     })

@@ -10,10 +10,12 @@ mod family;
 mod function;
 mod gait;
 mod modules;
+mod whole;
 
 pub use family::{families_source, family_file_name, family_source};
 pub use gait::gait_source;
 pub use modules::{check_modules, file_name, registry_source};
+pub use whole::{whole_file_name, whole_module, whole_source};
 
 /// The pinned sine and cosine, as source: part of every generated module.
 pub const MATH: &str = include_str!("../../support/math.rs");

@@ -1,6 +1,10 @@
 //! The registry of all gaits: a module for each, in those of their robots.
 
+use super::whole::{whole_file_name, whole_module};
 use super::{MATH, module_name, type_name};
+
+/// Name of the module of a whole robot. Those of further ways to lock its joints have a number behind it.
+pub(super) const WHOLE: &str = "whole";
 
 /// What the program calls a gait: `trot`, or `rabbit/walk` for one whose robot has a module.
 pub fn key(robot: &str, gait: &str) -> String {
@@ -18,13 +22,14 @@ pub fn file_name(robot: &str, gait: &str) -> String {
 /// What to rename.
 pub fn check_modules(robots: &[(&str, Vec<String>)]) -> Result<(), String> {
     let reserved = ["math".to_string(), "gaits".to_string()];
+    let is_whole = |name: &str| name.trim_end_matches(|c: char| c.is_ascii_digit()) == WHOLE;
     let mut top = reserved.to_vec();
     for (robot, gaits) in robots {
         let mut own = reserved.to_vec();
         let taken = if robot.is_empty() { &mut top } else { &mut own };
         for gait in gaits {
             let module = module_name(gait);
-            if taken.contains(&module) {
+            if taken.contains(&module) || is_whole(&module) {
                 let of = if robot.is_empty() { String::new() } else { format!(" of the robot `{robot}`") };
                 return Err(format!("a gait{of} cannot be called `{gait}`: there is a module `{module}` already"));
             }
@@ -36,7 +41,7 @@ pub fn check_modules(robots: &[(&str, Vec<String>)]) -> Result<(), String> {
             "this is no name in Rust"
         } else if *robot != module_name(robot) {
             "write it in small letters"
-        } else if top.iter().any(|t| t == robot) {
+        } else if top.iter().any(|t| t == robot) || is_whole(robot) {
             "there is a gait or module of that name already"
         } else {
             top.push((*robot).to_string());
@@ -47,9 +52,19 @@ pub fn check_modules(robots: &[(&str, Vec<String>)]) -> Result<(), String> {
     Ok(())
 }
 
-/// Source of the module that holds all gaits of a build.
-pub fn registry_source(robots: &[(&str, Vec<String>)], runtime: Option<&str>, origin: &str) -> String {
-    let mut source = tree(robots, file_name, |_| String::new(), origin);
+/// Source of the module that holds all gaits of a build; `wholes` tells how many whole robots each robot is.
+pub fn registry_source(
+    robots: &[(&str, Vec<String>)],
+    wholes: &[usize],
+    runtime: Option<&str>,
+    origin: &str,
+) -> String {
+    let whole = |robot: usize| {
+        (0..wholes[robot])
+            .map(|n| module(&whole_module(n), "The whole robot", &whole_file_name(robots[robot].0, n)))
+            .collect()
+    };
+    let mut source = tree(robots, file_name, whole, origin);
     if let Some(runtime) = runtime {
         let all: Vec<String> = paths(robots).iter().map(|(module, name)| format!("&{module}::{name}")).collect();
         let all = all.join(", ");
@@ -78,7 +93,10 @@ pub(super) fn tree(
     let mut source =
         format!("// {origin}\n/// Elementary functions with pinned results.\npub mod math {{\n{MATH}\n}}\n");
     for (k, (robot, gaits)) in robots.iter().enumerate() {
-        let modules: String = gaits.iter().map(|gait| gait_module(gait, &file(robot, gait))).collect();
+        let gait_module = |gait: &String| {
+            module(&module_name(gait), &format!("Generated dynamics of the {gait}"), &file(robot, gait))
+        };
+        let modules: String = gaits.iter().map(gait_module).collect();
         let items = shared(k) + &modules;
         if robot.is_empty() {
             source += &items;
@@ -90,11 +108,10 @@ pub(super) fn tree(
     source
 }
 
-fn gait_module(gait: &str, file: &str) -> String {
-    let module = module_name(gait);
+fn module(name: &str, what: &str, file: &str) -> String {
     format!(
-        "/// Generated dynamics of the {gait}.\n#[rustfmt::skip]\n#[allow(clippy::all, clippy::pedantic)]\n\
-         pub mod {module} {{\n    include!(concat!(env!(\"OUT_DIR\"), \"/{file}\"));\n}}\n"
+        "/// {what}.\n#[rustfmt::skip]\n#[allow(clippy::all, clippy::pedantic)]\n\
+         pub mod {name} {{\n    include!(concat!(env!(\"OUT_DIR\"), \"/{file}\"));\n}}\n"
     )
 }
 
@@ -112,6 +129,9 @@ mod tests {
         for bad in [
             [("", &["trot", "Trot"][..]), ("rabbit", &["walk"])],
             [("", &["math"]), ("rabbit", &["walk"])],
+            [("", &["trot"]), ("rabbit", &["whole"])],
+            [("", &["whole2"]), ("rabbit", &["walk"])],
+            [("", &["trot"]), ("whole", &["walk"])],
             [("", &["trot"]), ("rabbit", &["gaits"])],
             [("", &["trot"]), ("trot", &["walk"])],
             [("", &["trot"]), ("fn", &["walk"])],

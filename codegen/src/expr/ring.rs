@@ -67,6 +67,14 @@ impl Ring {
         [q, qd, qdd]
     }
 
+    /// A speed that is no coordinate's rate, with its derivative: symbols `name`, `name_d`.
+    pub fn speed(&mut self, name: &str) -> [Var; 2] {
+        let u = self.symbol(name);
+        let ud = self.symbol(format!("{name}_d"));
+        self.rates.insert(u, ud);
+        [u, ud]
+    }
+
     fn push(&mut self, kind: Kind) -> Var {
         let atom = Var::plain(self.plain.len());
         if let Kind::Bound(definition) | Kind::Reciprocal(definition) = &kind

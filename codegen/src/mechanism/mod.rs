@@ -5,9 +5,11 @@
 
 mod family;
 mod parameter;
+mod whole;
 
 pub use family::Family;
 pub use parameter::{Parameter, Sign, parameters, select, with};
+pub use whole::{Whole, WholeJoint, WholeLeg};
 
 use crate::spec::{Axis, Gait, HalfSteps, Inertia, Joint, Leg, Limits, Robot, Rotation, Segment, Unactuated};
 
@@ -88,16 +90,7 @@ impl Mechanism {
     /// Builds the virtual-leg model of `gait`. Both must have passed validation, and the robot must be
     /// one whose locked joints are gone ([`Robot::locked`]).
     pub fn new(robot: &Robot, gait: &Gait) -> Mechanism {
-        let mut bodies = vec![Body {
-            name: robot.platform.name.clone(),
-            parent: None,
-            coordinate: None,
-            axis: Axis::Pitch,
-            offset: [0.0; 3],
-            mass: robot.platform.mass,
-            com: [0.0; 3],
-            inertia: robot.platform.inertia,
-        }];
+        let mut bodies = vec![Body::platform(robot)];
         let mut joints = Vec::new();
         let legs = [0, 1].map(|k| {
             let from_centre = |mount: &[f64; 3]| [0, 1, 2].map(|axis| mount[axis] - robot.platform.com[axis]);

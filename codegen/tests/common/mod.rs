@@ -3,6 +3,7 @@
 
 use piaffe_codegen::SpecFile;
 use piaffe_codegen::dynamics::{Kernel, LUMPS, Model, PARAMETERS, family_kernels, kernels};
+use piaffe_codegen::expr::Ring;
 use piaffe_codegen::mechanism::{Family, Mechanism, parameters};
 use piaffe_codegen::spec::{Gait, Robot, parse_gait, parse_robot};
 use std::collections::BTreeMap;
@@ -82,16 +83,21 @@ impl Derived {
 
     /// The kernel's values from its unfactored expressions.
     pub fn run(&self, name: &str, inputs: &[&[f64]]) -> Outputs {
-        let kernel = self.kernel(name);
-        assert_eq!(kernel.inputs.len(), inputs.len(), "{name}: inputs");
-        let mut values = BTreeMap::new();
-        for (input, numbers) in kernel.inputs.iter().zip(inputs) {
-            assert_eq!(input.symbols.len(), numbers.len(), "{name}: {}", input.name);
-            values.extend(input.symbols.iter().copied().zip(numbers.iter().copied()));
-        }
-        let mut flat = self.model.ring.evaluate_all(kernel.outputs.iter().flat_map(|o| &o.values), &values).into_iter();
-        Outputs(kernel.outputs.iter().map(|o| (o.name, flat.by_ref().take(o.values.len()).collect())).collect())
+        evaluate(&self.model.ring, self.kernel(name), inputs)
     }
+}
+
+/// A kernel's values from its unfactored expressions.
+pub fn evaluate(ring: &Ring, kernel: &Kernel, inputs: &[&[f64]]) -> Outputs {
+    let name = &kernel.name;
+    assert_eq!(kernel.inputs.len(), inputs.len(), "{name}: inputs");
+    let mut values = BTreeMap::new();
+    for (input, numbers) in kernel.inputs.iter().zip(inputs) {
+        assert_eq!(input.symbols.len(), numbers.len(), "{name}: {}", input.name);
+        values.extend(input.symbols.iter().copied().zip(numbers.iter().copied()));
+    }
+    let mut flat = ring.evaluate_all(kernel.outputs.iter().flat_map(|o| &o.values), &values).into_iter();
+    Outputs(kernel.outputs.iter().map(|o| (o.name, flat.by_ref().take(o.values.len()).collect())).collect())
 }
 
 impl Outputs {

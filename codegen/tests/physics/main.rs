@@ -12,6 +12,7 @@ mod numbers;
 mod robots;
 mod state;
 mod support;
+mod whole;
 
 use common::Derived;
 use piaffe_codegen::mechanism::Mechanism;

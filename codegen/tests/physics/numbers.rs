@@ -72,7 +72,7 @@ pub fn assert_close(what: &str, found: &[f64], expected: &[f64], tolerance: f64)
     }
 }
 
-type Matrix = [[f64; 3]; 3];
+pub type Matrix = [[f64; 3]; 3];
 
 /// A body in plain numbers: mass centre and orientation in the world.
 pub struct Pose {
@@ -80,21 +80,25 @@ pub struct Pose {
     pub rotation: Matrix,
 }
 
-fn times(a: &Matrix, b: &Matrix) -> Matrix {
+pub fn times(a: &Matrix, b: &Matrix) -> Matrix {
     [0, 1, 2].map(|i| [0, 1, 2].map(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
 }
 
-fn apply(a: &Matrix, v: [f64; 3]) -> [f64; 3] {
+pub fn apply(a: &Matrix, v: [f64; 3]) -> [f64; 3] {
     a.map(|row| dot(&row, &v))
 }
 
-fn turn(axis: usize, angle: f64) -> Matrix {
+pub fn turn(axis: usize, angle: f64) -> Matrix {
     let (s, c) = angle.sin_cos();
     match axis {
         0 => [[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]],
         1 => [[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]],
         _ => [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]],
     }
+}
+
+pub fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|k| a[k] + b[k])
 }
 
 /// Places of all bodies and the two feet, by composing rotations: independent of the expressions.
@@ -108,7 +112,6 @@ pub fn poses(m: &Mechanism, x: &[f64]) -> (Vec<Pose>, [[f64; 3]; 2]) {
         Rotation::Pitch => turn(2, q[m.joints.len()]),
         Rotation::Roll => turn(0, q[m.joints.len()]),
     };
-    let add = |a: [f64; 3], b: [f64; 3]| [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
     let mut frames: Vec<([f64; 3], Matrix)> = Vec::new();
     for body in &m.bodies {
         let frame = match (body.parent, body.coordinate) {
