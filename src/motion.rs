@@ -16,20 +16,39 @@ pub struct Motion {
 /// same configuration, velocities after the impact (eq. 16, 18, 19), legs renamed where the gait is
 /// mirrored. Angles in rad, rates in rad/s.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct HalfStep {
+pub struct HalfStep<T = f64> {
     /// T, s.
-    pub duration: f64,
-    pub q_initial: Vec<f64>,
-    pub qd_initial: Vec<f64>,
+    pub duration: T,
+    pub q_initial: Vec<T>,
+    pub qd_initial: Vec<T>,
     /// Interior values, one list per time.
-    pub q_interior: Vec<Vec<f64>>,
-    pub q_final: Vec<f64>,
-    pub qd_final: Vec<f64>,
-    pub beta_initial: f64,
-    pub betad_initial: f64,
+    pub q_interior: Vec<Vec<T>>,
+    pub q_final: Vec<T>,
+    pub qd_final: Vec<T>,
+    pub beta_initial: T,
+    pub betad_initial: T,
     /// What β and β̇ must be at the end for the motion to be a cycle (eq. 23, 24).
-    pub beta_final: f64,
-    pub betad_final: f64,
+    pub beta_final: T,
+    pub betad_final: T,
+}
+
+impl HalfStep {
+    /// The same numbers as scalars of another kind.
+    pub fn cast<T: From<f64>>(&self) -> HalfStep<T> {
+        let list = |values: &[f64]| values.iter().map(|x| T::from(*x)).collect();
+        HalfStep {
+            duration: self.duration.into(),
+            q_initial: list(&self.q_initial),
+            qd_initial: list(&self.qd_initial),
+            q_interior: self.q_interior.iter().map(|q| list(q)).collect(),
+            q_final: list(&self.q_final),
+            qd_final: list(&self.qd_final),
+            beta_initial: self.beta_initial.into(),
+            betad_initial: self.betad_initial.into(),
+            beta_final: self.beta_final.into(),
+            betad_final: self.betad_final.into(),
+        }
+    }
 }
 
 /// What is minimized, per metre of travel (§4.3).

@@ -1,5 +1,7 @@
 //! The independent verification against the generated kernels, physical identities and broken motions.
 
+#[path = "verify/derivatives.rs"]
+mod derivatives;
 #[path = "verify/dynamics.rs"]
 mod dynamics;
 #[path = "verify/motions.rs"]

@@ -1,12 +1,15 @@
 //! Whether the half steps follow from each other (§5.2): the impact at the end of each, and how far
 //! the motion is from a cycle.
 
-use super::constraint::{Constraint, Tally};
+use super::constraint::Constraint;
 use super::error::VerifyError;
-use super::grid::tangential;
-use super::impact::impact;
+use super::impact::impact_of;
+use super::margins::Units;
+use super::multibody::Multibody;
+use super::numbers::Numbers;
+use super::scalar::Scalar;
 use crate::model::{Description, HalfSteps};
-use crate::motion::{HalfStep, Motion};
+use crate::motion::HalfStep;
 
 /// Leg that half step `index` stands on.
 pub fn stance_leg(description: &Description, index: usize) -> usize {
@@ -16,58 +19,49 @@ pub fn stance_leg(description: &Description, index: usize) -> usize {
     }
 }
 
-/// Notes the constraints on the impact that ends half step `index`, and returns how far the initial
-/// state of the one after it is from what follows (eq. 16, 18, 19): rad, and rad/s over max(1, rate).
-pub fn transition(
+/// Notes the margins of the impact that ends half step `index`, and returns how far the initial state of the one after
+/// it is from what follows (eq. 16, 18, 19): rad, and rad/s over max(1, rate).
+pub fn transition<T: Scalar>(
     description: &Description,
-    motion: &Motion,
+    numbers: Numbers<T>,
+    half_steps: &[HalfStep<T>],
     index: usize,
-    tally: &mut Tally,
-) -> Result<f64, VerifyError> {
-    let before = &motion.half_steps[index];
-    let after = &motion.half_steps[(index + 1) % motion.half_steps.len()];
+    note: impl FnMut(Constraint, T),
+) -> Result<Vec<T>, VerifyError> {
+    let before = &half_steps[index];
+    let after = &half_steps[(index + 1) % half_steps.len()];
     let q = complete(description, &before.q_final, before.beta_final);
     let qd = complete(description, &before.qd_final, before.betad_final);
     let landing = 1 - stance_leg(description, index);
-    let impact = impact(description, landing, &q, &qd).ok_or(VerifyError::Impact { half_step: index + 1 })?;
-
-    let momentum = description.total_mass();
-    let (impulse, t) = (impact.impulse, before.duration);
-    tally.note(Constraint::VerticalImpulse, impulse.y / momentum, t);
-    tally.note(
-        Constraint::ImpulseFriction,
-        (description.limits.friction * impulse.y - tangential(&impulse)) / momentum,
-        t,
-    );
-    tally.note(Constraint::Leaving, impact.leaving.y, t);
+    let mut multibody = Multibody::with(description, numbers);
+    let impact = impact_of(&mut multibody, landing, &q, &qd).ok_or(VerifyError::Impact { half_step: index + 1 })?;
+    Units::new(description).impact(multibody.numbers(), &impact.impulse, &impact.leaving, note);
 
     let rates = &impact.after[description.positions()..];
     let found = complete(description, &after.q_initial, after.beta_initial);
     let found_rates = complete(description, &after.qd_initial, after.betad_initial);
-    let mut worst = 0.0_f64;
-    for k in 0..q.len() {
+    let gaps = (0..q.len()).flat_map(|k| {
         let (from, sign) = match description.half_steps {
             HalfSteps::Mirrored => description.swapped(k),
             HalfSteps::Distinct => (k, 1.0),
         };
-        worst = worst.max((found[k] - sign * q[from]).abs());
-        worst = worst.max(relative(found_rates[k], sign * rates[from]));
-    }
-    Ok(worst)
+        [found[k] - q[from].scale(sign), relative(found_rates[k], rates[from].scale(sign))]
+    });
+    Ok(gaps.collect())
 }
 
 /// How far the integrated β and β̇ end from what the motion says (eq. 23, 24).
-pub fn closure(half_step: &HalfStep, end: [f64; 2]) -> f64 {
-    (end[0] - half_step.beta_final).abs().max(relative(end[1], half_step.betad_final))
+pub fn closure<T: Scalar>(half_step: &HalfStep<T>, end: [T; 2]) -> [T; 2] {
+    [end[0] - half_step.beta_final, relative(end[1], half_step.betad_final)]
 }
 
 /// Difference of two rates, relative where they are large.
-fn relative(found: f64, expected: f64) -> f64 {
-    (found - expected).abs() / expected.abs().max(1.0)
+fn relative<T: Scalar>(found: T, expected: T) -> T {
+    (found - expected) / T::from(expected.least_magnitude().max(1.0))
 }
 
 /// q from Q and β.
-fn complete(description: &Description, prescribed: &[f64], beta: f64) -> Vec<f64> {
+fn complete<T: Scalar>(description: &Description, prescribed: &[T], beta: T) -> Vec<T> {
     let mut q = prescribed.to_vec();
     q.insert(description.unactuated.min(q.len()), beta);
     q

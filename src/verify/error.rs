@@ -1,6 +1,7 @@
 //! What can keep a motion from being verified at all, and the checks of its shape.
 
 use super::integrate::Stop;
+use super::scalar::Scalar;
 use crate::model::Description;
 use crate::motion::{HalfStep, Motion};
 
@@ -50,7 +51,7 @@ impl VerifyError {
 }
 
 /// Whether the motion has the numbers that the gait needs, all of them finite.
-pub(super) fn check(description: &Description, motion: &Motion, grid: usize) -> Result<(), VerifyError> {
+pub(crate) fn check(description: &Description, motion: &Motion, grid: usize) -> Result<(), VerifyError> {
     let (expected, found) = (description.phases(), motion.half_steps.len());
     if expected != found {
         return Err(VerifyError::HalfSteps { gait: description.gait, expected, found });
@@ -64,16 +65,20 @@ pub(super) fn check(description: &Description, motion: &Motion, grid: usize) -> 
     Ok(())
 }
 
-pub(super) fn check_half_step(half_step: &HalfStep, prescribed: usize, number: usize) -> Result<(), VerifyError> {
-    let duration = half_step.duration;
+pub(super) fn check_half_step<T: Scalar>(
+    half_step: &HalfStep<T>,
+    prescribed: usize,
+    number: usize,
+) -> Result<(), VerifyError> {
+    let duration = half_step.duration.value();
     if !(duration.is_finite() && duration > 0.0) {
         return Err(VerifyError::Duration { half_step: number, duration });
     }
-    let list = |name: String, values: &[f64], expected: usize| {
+    let list = |name: String, values: &[T], expected: usize| {
         if values.len() != expected {
             return Err(VerifyError::Length { half_step: number, list: name, expected, found: values.len() });
         }
-        if values.iter().any(|x| !x.is_finite()) {
+        if values.iter().any(|x| !x.value().is_finite()) {
             return Err(VerifyError::NotFinite { half_step: number, list: name });
         }
         Ok(())

@@ -8,6 +8,7 @@
 //! Before it the stance foot was at rest, which gives ṗ⁻ from q̇⁻ (eq. 3).
 
 use super::multibody::{Multibody, Vec3};
+use super::scalar::Scalar;
 use crate::model::Description;
 
 /// Pivots below this share of the largest entry make a system singular.
@@ -15,37 +16,43 @@ const SINGULAR: f64 = 1e-13;
 
 /// What the impact does.
 #[derive(Clone, Debug)]
-pub struct Impact {
+pub struct Impact<T = f64> {
     /// Ẋ⁻, Ẋ⁺, legs not yet renamed.
-    pub before: Vec<f64>,
-    pub after: Vec<f64>,
+    pub before: Vec<T>,
+    pub after: Vec<T>,
     /// On the landing foot, N·s.
-    pub impulse: Vec3,
+    pub impulse: Vec3<T>,
     /// Velocity of the leaving foot after, m/s.
-    pub leaving: Vec3,
+    pub leaving: Vec3<T>,
 }
 
 /// Impact on the foot of leg `landing` at the end of single support on the other leg. `None` where
 /// eq. 12 has no unique solution.
 pub fn impact(description: &Description, landing: usize, q: &[f64], qd: &[f64]) -> Option<Impact> {
-    let mut multibody = Multibody::new(description);
-    multibody.set(q, qd, &vec![0.0; q.len()]);
+    impact_of(&mut Multibody::new(description), landing, q, qd)
+}
+
+/// The same, of a mechanism with numbers of its own.
+pub fn impact_of<T: Scalar>(multibody: &mut Multibody<T>, landing: usize, q: &[T], qd: &[T]) -> Option<Impact<T>> {
+    let description = multibody.description();
+    let zero = T::zero();
+    multibody.set(q, qd, &vec![zero; q.len()]);
     let (nc, n) = (description.positions(), multibody.size());
-    let mut a = vec![0.0; n * n];
+    let mut a = vec![zero; n * n];
     multibody.inertia(&mut a);
     let feet = [0, 1].map(|leg| {
-        let mut d = vec![0.0; n * nc];
+        let mut d = vec![zero; n * nc];
         multibody.foot_jacobian(leg, &mut d);
         d
     });
     let stance_velocity = multibody.foot(1 - landing).velocity;
-    let mut before: Vec<f64> = (0..nc).map(|c| -stance_velocity[c]).collect();
+    let mut before: Vec<T> = (0..nc).map(|c| -stance_velocity[c]).collect();
     before.extend_from_slice(qd);
 
     let d = &feet[landing];
     let size = n + nc;
-    let mut system = vec![0.0; size * size];
-    let mut right = vec![0.0; size];
+    let mut system = vec![zero; size * size];
+    let mut right = vec![zero; size];
     for row in 0..n {
         for column in 0..n {
             system[row * size + column] = a[row * n + column];
@@ -57,11 +64,11 @@ pub fn impact(description: &Description, landing: usize, q: &[f64], qd: &[f64]) 
         }
     }
     solve(&mut system, &mut right)?;
-    let velocity = |foot: &[f64], xd: &[f64]| {
+    let velocity = |foot: &[T], xd: &[T]| {
         let mut v = Vec3::zeros();
         for (row, rate) in foot.chunks_exact(nc).zip(xd) {
             for (v, d) in v.iter_mut().zip(row) {
-                *v += d * rate;
+                *v += *d * *rate;
             }
         }
         v
@@ -74,14 +81,15 @@ pub fn impact(description: &Description, landing: usize, q: &[f64], qd: &[f64]) 
 }
 
 /// Gaussian elimination with row exchanges; `matrix` is row-major, the solution replaces `right`.
-fn solve(matrix: &mut [f64], right: &mut [f64]) -> Option<()> {
+fn solve<T: Scalar>(matrix: &mut [T], right: &mut [T]) -> Option<()> {
     let n = right.len();
-    let largest = matrix.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let largest = matrix.iter().fold(0.0, |m: f64, x| m.max(x.value().abs()));
     for k in 0..n {
-        let size = |row: &usize| matrix[row * n + k].abs();
+        let size = |row: &usize| matrix[row * n + k].value().abs();
         let pivot = (k..n).max_by(|a, b| size(a).total_cmp(&size(b)))?;
         let value = matrix[pivot * n + k];
-        if value.is_nan() || value.abs() <= SINGULAR * largest {
+        let magnitude = value.least_magnitude();
+        if magnitude.is_nan() || magnitude <= SINGULAR * largest {
             return None;
         }
         for column in 0..n {
@@ -91,14 +99,17 @@ fn solve(matrix: &mut [f64], right: &mut [f64]) -> Option<()> {
         for row in k + 1..n {
             let factor = matrix[row * n + k] / value;
             for column in k..n {
-                matrix[row * n + column] -= factor * matrix[k * n + column];
+                let above = matrix[k * n + column];
+                matrix[row * n + column] -= factor * above;
             }
-            right[row] -= factor * right[k];
+            let above = right[k];
+            right[row] -= factor * above;
         }
     }
     for k in (0..n).rev() {
         for column in k + 1..n {
-            right[k] -= matrix[k * n + column] * right[column];
+            let known = matrix[k * n + column] * right[column];
+            right[k] -= known;
         }
         right[k] /= matrix[k * n + k];
     }

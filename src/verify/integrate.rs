@@ -4,6 +4,7 @@
 //! `tableau.rs`). A right-hand side that is not defined, or a result that is not
 //! finite, counts as too large a step; steps that get too small or too many end the integration.
 
+use super::scalar::Scalar;
 use super::tableau::{A, ALL_STAGES, C, D, E3, E5, Row, STAGES};
 
 /// Steps, accepted or not, after which an integration is given up.
@@ -25,35 +26,37 @@ pub enum Stop {
 
 /// A solution as a function of time.
 #[derive(Clone, Debug)]
-pub struct Solution<const N: usize> {
-    steps: Vec<Step<N>>,
-    end: [f64; N],
+pub struct Solution<const N: usize, T = f64> {
+    steps: Vec<Step<N, T>>,
+    end: [T; N],
 }
 
 /// An accepted step with its interpolant.
 #[derive(Clone, Debug)]
-struct Step<const N: usize> {
+struct Step<const N: usize, T> {
     start: f64,
     length: f64,
-    y: [f64; N],
-    coefficients: [[f64; N]; 7],
+    y: [T; N],
+    coefficients: [[T; N]; 7],
 }
 
 /// Integrates from `start` to `end`; `tolerance` is relative to max(1, |y|), per step.
 ///
+/// Steps are chosen by the values of y: derivatives that its numbers carry are those of the steps taken.
+///
 /// # Errors
 /// If the solution cannot be continued to `end`.
-pub fn integrate<const N: usize>(
-    mut f: impl FnMut(f64, &[f64; N]) -> Option<[f64; N]>,
+pub fn integrate<const N: usize, T: Scalar>(
+    mut f: impl FnMut(f64, &[T; N]) -> Option<[T; N]>,
     start: f64,
     end: f64,
-    y: [f64; N],
+    y: [T; N],
     tolerance: f64,
-) -> Result<Solution<N>, Stop> {
+) -> Result<Solution<N, T>, Stop> {
     let span = end - start;
     let (mut t, mut y) = (start, y);
     let mut solution = Solution { steps: Vec::with_capacity(64), end: y };
-    let mut k = [[0.0; N]; ALL_STAGES];
+    let mut k = [[T::zero(); N]; ALL_STAGES];
     k[0] = f(t, &y).filter(|rate| finite(rate)).ok_or(Stop::Blowup { time: t })?;
     let mut h = span / 16.0;
     let mut rejected = false;
@@ -90,9 +93,9 @@ pub fn integrate<const N: usize>(
     Err(Stop::Steps { time: t })
 }
 
-impl<const N: usize> Solution<N> {
+impl<const N: usize, T: Scalar> Solution<N, T> {
     /// y at the end of the interval.
-    pub fn end(&self) -> [f64; N] {
+    pub fn end(&self) -> [T; N] {
         self.end
     }
 
@@ -102,34 +105,34 @@ impl<const N: usize> Solution<N> {
     }
 
     /// y at time `t`, to order 7. `cursor` remembers the step; start it with 0 and let times grow.
-    pub fn at(&self, t: f64, cursor: &mut usize) -> [f64; N] {
+    pub fn at(&self, t: f64, cursor: &mut usize) -> [T; N] {
         while *cursor + 1 < self.steps.len() && t >= self.steps[*cursor + 1].start {
             *cursor += 1;
         }
         let Some(step) = self.steps.get(*cursor) else { return self.end };
         let x = (t - step.start) / step.length;
-        let mut y = [0.0; N];
+        let mut y = [T::zero(); N];
         for (power, c) in step.coefficients.iter().rev().enumerate() {
             let factor = if power % 2 == 0 { x } else { 1.0 - x };
             for (y, c) in y.iter_mut().zip(c) {
-                *y = (*y + c) * factor;
+                *y = (*y + *c).scale(factor);
             }
         }
         for (y, start) in y.iter_mut().zip(&step.y) {
-            *y += start;
+            *y += *start;
         }
         y
     }
 }
 
 /// y after a step, with its stages in `k`.
-fn advance<const N: usize>(
-    f: &mut impl FnMut(f64, &[f64; N]) -> Option<[f64; N]>,
+fn advance<const N: usize, T: Scalar>(
+    f: &mut impl FnMut(f64, &[T; N]) -> Option<[T; N]>,
     t: f64,
     h: f64,
-    y: &[f64; N],
-    k: &mut [[f64; N]; ALL_STAGES],
-) -> Option<[f64; N]> {
+    y: &[T; N],
+    k: &mut [[T; N]; ALL_STAGES],
+) -> Option<[T; N]> {
     for stage in 1..STAGES {
         k[stage] = f(t + C[stage] * h, &shifted(y, h, &combine(A[stage], k)))?;
     }
@@ -139,8 +142,14 @@ fn advance<const N: usize>(
 }
 
 /// Error of a step in units of the tolerance: the estimates of order 5 and 3 together.
-fn error<const N: usize>(k: &[[f64; N]; ALL_STAGES], h: f64, y: &[f64; N], next: &[f64; N], tolerance: f64) -> f64 {
-    let (e5, e3) = (combine(E5, k), combine(E3, k));
+fn error<const N: usize, T: Scalar>(
+    k: &[[T; N]; ALL_STAGES],
+    h: f64,
+    y: &[T; N],
+    next: &[T; N],
+    tolerance: f64,
+) -> f64 {
+    let [y, next, e5, e3] = [*y, *next, combine(E5, k), combine(E3, k)].map(|list| list.map(T::value));
     let (mut fifth, mut third) = (0.0, 0.0);
     for i in 0..N {
         let scale = tolerance * y[i].abs().max(next[i].abs()).max(1.0);
@@ -151,46 +160,46 @@ fn error<const N: usize>(k: &[[f64; N]; ALL_STAGES], h: f64, y: &[f64; N], next:
     if denominator == 0.0 { 0.0 } else { h * fifth / (denominator * N as f64).sqrt() }
 }
 
-fn interpolant<const N: usize>(
-    f: &mut impl FnMut(f64, &[f64; N]) -> Option<[f64; N]>,
+fn interpolant<const N: usize, T: Scalar>(
+    f: &mut impl FnMut(f64, &[T; N]) -> Option<[T; N]>,
     t: f64,
     h: f64,
-    y: &[f64; N],
-    next: &[f64; N],
-    k: &mut [[f64; N]; ALL_STAGES],
-) -> Option<Step<N>> {
+    y: &[T; N],
+    next: &[T; N],
+    k: &mut [[T; N]; ALL_STAGES],
+) -> Option<Step<N, T>> {
     for stage in STAGES + 1..ALL_STAGES {
         k[stage] = f(t + C[stage] * h, &shifted(y, h, &combine(A[stage], k)))?;
     }
-    let mut coefficients = [[0.0; N]; 7];
+    let mut coefficients = [[T::zero(); N]; 7];
     for i in 0..N {
         let difference = next[i] - y[i];
         coefficients[0][i] = difference;
-        coefficients[1][i] = h * k[0][i] - difference;
-        coefficients[2][i] = 2.0 * difference - h * (k[STAGES][i] + k[0][i]);
+        coefficients[1][i] = k[0][i].scale(h) - difference;
+        coefficients[2][i] = difference.scale(2.0) - (k[STAGES][i] + k[0][i]).scale(h);
     }
     for (row, c) in D.iter().zip(&mut coefficients[3..]) {
-        *c = combine(row, k).map(|x| h * x);
+        *c = combine(row, k).map(|x| x.scale(h));
     }
     Some(Step { start: t, length: h, y: *y, coefficients })
 }
 
-fn combine<const N: usize>(row: Row, k: &[[f64; N]; ALL_STAGES]) -> [f64; N] {
-    let mut sum = [0.0; N];
+fn combine<const N: usize, T: Scalar>(row: Row, k: &[[T; N]; ALL_STAGES]) -> [T; N] {
+    let mut sum = [T::zero(); N];
     for (stage, weight) in row {
         for (s, k) in sum.iter_mut().zip(&k[*stage]) {
-            *s += weight * k;
+            *s += k.scale(*weight);
         }
     }
     sum
 }
 
-fn shifted<const N: usize>(y: &[f64; N], h: f64, rate: &[f64; N]) -> [f64; N] {
-    std::array::from_fn(|i| y[i] + h * rate[i])
+fn shifted<const N: usize, T: Scalar>(y: &[T; N], h: f64, rate: &[T; N]) -> [T; N] {
+    std::array::from_fn(|i| y[i] + rate[i].scale(h))
 }
 
-fn finite(y: &[f64]) -> bool {
-    y.iter().all(|x| x.is_finite())
+fn finite<T: Scalar>(y: &[T]) -> bool {
+    y.iter().all(|x| x.value().is_finite())
 }
 
 /// By square roots, which are the same bits everywhere.

@@ -12,59 +12,57 @@
 //! shared with the generated code but the numbers of the specification. In a gait without z the
 //! motion across the sagittal plane, and so the depth of the hips, is ignored.
 
+use super::numbers::Numbers;
+use super::scalar::Scalar;
 use crate::model::{Description, Rotation};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
 /// A vector in world axes.
-pub type Vec3 = Vector3<f64>;
+pub type Vec3<T = f64> = Vector3<T>;
 
 /// A mechanism at one state. The workspace is allocated once; no method allocates.
 #[derive(Clone, Debug)]
-pub struct Multibody<'a> {
+pub struct Multibody<'a, T = f64> {
     description: &'a Description,
-    frames: Vec<Frame>,
+    numbers: Numbers<T>,
+    frames: Vec<Frame<T>>,
     /// Body that coordinate k of q turns on its parent (θ: the platform on the world).
     carriers: Vec<usize>,
     /// Whether coordinate k moves body b, at `k * bodies + b`.
     moves: Vec<bool>,
-    feet: [Point; 2],
+    feet: [Point<T>; 2],
 }
 
 /// A body: where it is and how it moves, relative to the platform's mass centre.
 #[derive(Clone, Copy, Debug)]
-struct Frame {
-    /// From body axes to world axes.
-    rotation: Matrix3<f64>,
+struct Frame<T> {
+    /// The body's axes in the world.
+    axes: [Vec3<T>; 3],
     /// Axis of the body's joint.
-    axis: Vec3,
-    spin: Vec3,
-    spin_rate: Vec3,
-    joint: Point,
-    com: Point,
+    axis: Vec3<T>,
+    spin: Vec3<T>,
+    spin_rate: Vec3<T>,
+    joint: Point<T>,
+    com: Point<T>,
 }
 
 /// A point with its motion relative to the platform's mass centre; m, m/s, m/s².
 #[derive(Clone, Copy, Debug)]
-pub struct Point {
-    pub position: Vec3,
-    pub velocity: Vec3,
-    pub acceleration: Vec3,
+pub struct Point<T = f64> {
+    pub position: Vec3<T>,
+    pub velocity: Vec3<T>,
+    pub acceleration: Vec3<T>,
 }
-
-const ZERO: Vec3 = Vec3::new(0.0, 0.0, 0.0);
-const ORIGIN: Point = Point { position: ZERO, velocity: ZERO, acceleration: ZERO };
-/// The world's axes.
-const STILL: Frame = Frame {
-    rotation: Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0),
-    axis: ZERO,
-    spin: ZERO,
-    spin_rate: ZERO,
-    joint: ORIGIN,
-    com: ORIGIN,
-};
 
 impl<'a> Multibody<'a> {
     pub fn new(description: &'a Description) -> Self {
+        Multibody::with(description, Numbers::new(description))
+    }
+}
+
+impl<'a, T: Scalar> Multibody<'a, T> {
+    /// The mechanism of `description` with other numbers.
+    pub fn with(description: &'a Description, numbers: Numbers<T>) -> Self {
         let count = description.bodies.len();
         let mut carriers = vec![0; description.orientations()];
         let mut moves = vec![false; carriers.len() * count];
@@ -78,11 +76,16 @@ impl<'a> Multibody<'a> {
                 carriers[k] = b;
             }
         }
-        Multibody { description, frames: vec![STILL; count], carriers, moves, feet: [ORIGIN; 2] }
+        let still = Frame::still();
+        Multibody { description, numbers, frames: vec![still; count], carriers, moves, feet: [still.joint; 2] }
     }
 
     pub fn description(&self) -> &'a Description {
         self.description
+    }
+
+    pub fn numbers(&self) -> &Numbers<T> {
+        &self.numbers
     }
 
     /// Number of components of X.
@@ -93,34 +96,34 @@ impl<'a> Multibody<'a> {
     /// Moves the mechanism to q, q̇, q̈ (rad, rad/s, rad/s²), with p at rest in the origin.
     ///
     /// Each list has one number per coordinate of q. With q̈ = 0, accelerations are those that come from velocities alone.
-    pub fn set(&mut self, q: &[f64], qd: &[f64], qdd: &[f64]) {
+    pub fn set(&mut self, q: &[T], qd: &[T], qdd: &[T]) {
         let axis = if self.description.rotation == Rotation::Roll { 0 } else { 2 };
         let theta = self.description.joints();
-        for (b, body) in self.description.bodies.iter().enumerate() {
+        for (b, (body, numbers)) in self.description.bodies.iter().zip(&self.numbers.bodies).enumerate() {
             let (above, here) = self.frames.split_at_mut(b);
             let Some(frame) = here.first_mut() else { continue };
             match body.parent.and_then(|parent| above.get(parent)) {
                 Some(parent) => {
-                    frame.joint = parent.point(&(parent.rotation * Vec3::from(body.offset)));
+                    frame.joint = parent.point(&parent.in_world(&numbers.offset));
                     frame.follow(parent);
                 }
-                None => frame.follow(&STILL),
+                None => frame.follow(&Frame::still()),
             }
             match body.coordinate {
                 Some(k) => frame.turn(body.axis, q[k], qd[k], qdd[k]),
                 None if b == 0 && theta < q.len() => frame.turn(axis, q[theta], qd[theta], qdd[theta]),
                 None => {}
             }
-            frame.com = frame.point(&(frame.rotation * Vec3::from(body.com)));
+            frame.com = frame.point(&frame.in_world(&numbers.com));
         }
-        for (foot, leg) in self.feet.iter_mut().zip(&self.description.legs) {
+        for ((foot, leg), arm) in self.feet.iter_mut().zip(&self.description.legs).zip(&self.numbers.feet) {
             let frame = &self.frames[leg.foot_body];
-            *foot = frame.point(&(frame.rotation * Vec3::from(leg.foot)));
+            *foot = frame.point(&frame.in_world(arm));
         }
     }
 
     /// The foot of a leg, relative to the platform's mass centre.
-    pub fn foot(&self, leg: usize) -> Point {
+    pub fn foot(&self, leg: usize) -> Point<T> {
         let foot = self.feet[leg];
         Point {
             position: foot.position,
@@ -130,7 +133,7 @@ impl<'a> Multibody<'a> {
     }
 
     /// The mass centre of a body, relative to the platform's.
-    pub fn com(&self, body: usize) -> Point {
+    pub fn com(&self, body: usize) -> Point<T> {
         let com = self.frames[body].com;
         Point {
             position: com.position,
@@ -140,7 +143,7 @@ impl<'a> Multibody<'a> {
     }
 
     /// Angular velocity of a body, rad/s.
-    pub fn spin(&self, body: usize) -> Vec3 {
+    pub fn spin(&self, body: usize) -> Vec3<T> {
         self.frames[body].spin
     }
 
@@ -150,13 +153,13 @@ impl<'a> Multibody<'a> {
     }
 
     /// Axis of coordinate `k` of q, and where it is.
-    pub fn axis(&self, k: usize) -> (Vec3, Vec3) {
+    pub fn axis(&self, k: usize) -> (Vec3<T>, Vec3<T>) {
         let carrier = &self.frames[self.carriers[k]];
         (carrier.axis, carrier.joint.position)
     }
 
     /// Partial velocity in q̇ₖ of the point of a body that is at `position`, m.
-    pub fn partial_velocity(&self, k: usize, body: usize, position: &Vec3) -> Vec3 {
+    pub fn partial_velocity(&self, k: usize, body: usize, position: &Vec3<T>) -> Vec3<T> {
         if !self.moves(k, body) {
             return Vec3::zeros();
         }
@@ -165,32 +168,31 @@ impl<'a> Multibody<'a> {
     }
 
     /// Partial angular velocity of a body in q̇ₖ.
-    pub fn partial_spin(&self, k: usize, body: usize) -> Vec3 {
+    pub fn partial_spin(&self, k: usize, body: usize) -> Vec3<T> {
         if self.moves(k, body) { self.axis(k).0 } else { Vec3::zeros() }
     }
 
     /// Angular momentum of a body about its mass centre if it turned at `spin`.
-    pub fn spin_momentum(&self, body: usize, spin: &Vec3) -> Vec3 {
-        let rotation = &self.frames[body].rotation;
-        rotation * (inertia(self.description, body) * rotation.tr_mul(spin))
+    pub fn spin_momentum(&self, body: usize, spin: &Vec3<T>) -> Vec3<T> {
+        let frame = &self.frames[body];
+        frame.in_world(&self.by_inertia(body, &frame.in_body(spin)))
     }
 
     /// Moment that a body's own rotation takes, about its mass centre: I α + ω × I ω, N·m.
-    pub fn spin_moment(&self, body: usize) -> Vec3 {
-        let Frame { rotation, spin, spin_rate, .. } = &self.frames[body];
+    pub fn spin_moment(&self, body: usize) -> Vec3<T> {
+        let frame = &self.frames[body];
         // In the body's axes, where the inertia is constant.
-        let inertia = inertia(self.description, body);
-        let (spin, spin_rate) = (rotation.tr_mul(spin), rotation.tr_mul(spin_rate));
-        rotation * (inertia * spin_rate + spin.cross(&(inertia * spin)))
+        let (spin, spin_rate) = (frame.in_body(&frame.spin), frame.in_body(&frame.spin_rate));
+        frame.in_world(&(self.by_inertia(body, &spin_rate) + spin.cross(&self.by_inertia(body, &spin))))
     }
 
     /// A(q) of eq. 5, row-major, kg, kg·m and kg·m².
-    pub fn inertia(&self, out: &mut [f64]) {
+    pub fn inertia(&self, out: &mut [T]) {
         let n = self.size();
         for row in 0..n {
             for column in 0..n {
-                let mut sum = 0.0;
-                for (b, body) in self.description.bodies.iter().enumerate() {
+                let mut sum = T::zero();
+                for (b, body) in self.numbers.bodies.iter().enumerate() {
                     let [(v, w), (u, s)] = [self.partials(row, b), self.partials(column, b)];
                     sum += body.mass * v.dot(&u) + w.dot(&self.spin_momentum(b, &s));
                 }
@@ -203,20 +205,20 @@ impl<'a> Multibody<'a> {
     }
 
     /// H(q, q̇) of eq. 5 where [`Multibody::set`] was given q̈ = 0, N and N·m.
-    pub fn bias(&self, out: &mut [f64]) {
+    pub fn bias(&self, out: &mut [T]) {
         for (k, sum) in out.iter_mut().enumerate().take(self.size()) {
-            *sum = 0.0;
-            for (b, body) in self.description.bodies.iter().enumerate() {
+            *sum = T::zero();
+            for (b, body) in self.numbers.bodies.iter().enumerate() {
                 let (v, w) = self.partials(k, b);
                 let mut acceleration = self.com(b).acceleration;
-                acceleration.y += self.description.gravity;
+                acceleration.y += self.numbers.gravity;
                 *sum += body.mass * v.dot(&acceleration) + w.dot(&self.spin_moment(b));
             }
         }
     }
 
     /// D of eq. 3, one row per coordinate of X: ḋ = DᵀẊ.
-    pub fn foot_jacobian(&self, leg: usize, out: &mut [f64]) {
+    pub fn foot_jacobian(&self, leg: usize, out: &mut [T]) {
         let nc = self.description.positions();
         let body = self.description.legs[leg].foot_body;
         for (k, row) in out.chunks_exact_mut(nc).enumerate().take(self.size()) {
@@ -226,23 +228,23 @@ impl<'a> Multibody<'a> {
     }
 
     /// Kinetic and potential energy (zero at y = 0) with the platform at `p` and moving at `pd`, J.
-    pub fn energy(&self, p: &Vec3, pd: &Vec3, qd: &[f64]) -> (f64, f64) {
-        let (mut kinetic, mut potential) = (0.0, 0.0);
-        for (b, body) in self.description.bodies.iter().enumerate() {
+    pub fn energy(&self, p: &Vec3<T>, pd: &Vec3<T>, qd: &[T]) -> (T, T) {
+        let (mut kinetic, mut potential) = (T::zero(), T::zero());
+        let half = T::from(0.5);
+        for (b, body) in self.numbers.bodies.iter().enumerate() {
             let com = self.com(b);
-            let spin = self.spin(b);
-            kinetic +=
-                0.5 * body.mass * (pd + com.velocity).norm_squared() + 0.5 * spin.dot(&self.spin_momentum(b, &spin));
-            potential += body.mass * self.description.gravity * (p.y + com.position.y);
+            let (spin, velocity) = (self.spin(b), pd + com.velocity);
+            kinetic += half * body.mass * velocity.dot(&velocity) + half * spin.dot(&self.spin_momentum(b, &spin));
+            potential += body.mass * self.numbers.gravity * (p.y + com.position.y);
         }
-        for (joint, rate) in self.description.joints.iter().zip(qd) {
-            kinetic += 0.5 * joint.rotor_inertia * rate * rate;
+        for (joint, rate) in self.numbers.joints.iter().zip(qd) {
+            kinetic += half * joint.rotor_inertia * *rate * *rate;
         }
         (kinetic, potential)
     }
 
     /// Partial velocities of a body's mass centre and spin in Ẋₖ.
-    fn partials(&self, k: usize, body: usize) -> (Vec3, Vec3) {
+    fn partials(&self, k: usize, body: usize) -> (Vec3<T>, Vec3<T>) {
         let positions = self.description.positions();
         if k < positions {
             return (unit(k), Vec3::zeros());
@@ -252,22 +254,43 @@ impl<'a> Multibody<'a> {
     }
 
     /// Inertia that a rotor adds to coordinate `k` of X: it turns with its joint, gear² times as heavy.
-    fn rotor(&self, k: usize) -> f64 {
-        let joint = k.checked_sub(self.description.positions()).and_then(|j| self.description.joints.get(j));
-        joint.map_or(0.0, |j| j.rotor_inertia)
+    fn rotor(&self, k: usize) -> T {
+        let joint = k.checked_sub(self.description.positions()).and_then(|j| self.numbers.joints.get(j));
+        joint.map_or(T::zero(), |j| j.rotor_inertia)
     }
 
-    fn in_plane(&self, mut v: Vec3) -> Vec3 {
+    /// A body's inertia about its mass centre times a vector, both in its own axes.
+    fn by_inertia(&self, body: usize, v: &Vec3<T>) -> Vec3<T> {
+        // Rows for columns: it is symmetric.
+        combined(&self.numbers.bodies[body].inertia, v)
+    }
+
+    fn in_plane(&self, mut v: Vec3<T>) -> Vec3<T> {
         if !self.description.lateral {
-            v.z = 0.0;
+            v.z = T::zero();
         }
         v
     }
 }
 
-impl Frame {
+impl<T: Scalar> Frame<T> {
+    /// The world's axes.
+    fn still() -> Self {
+        let zero = Vec3::zeros();
+        let origin = Point { position: zero, velocity: zero, acceleration: zero };
+        Frame { axes: [0, 1, 2].map(unit), axis: zero, spin: zero, spin_rate: zero, joint: origin, com: origin }
+    }
+
+    fn in_world(&self, v: &Vec3<T>) -> Vec3<T> {
+        combined(&self.axes, v)
+    }
+
+    fn in_body(&self, v: &Vec3<T>) -> Vec3<T> {
+        Vec3::from(self.axes.map(|axis| axis.dot(v)))
+    }
+
     /// The point of this body that is `arm` away from its joint.
-    fn point(&self, arm: &Vec3) -> Point {
+    fn point(&self, arm: &Vec3<T>) -> Point<T> {
         let swirl = self.spin.cross(arm);
         Point {
             position: self.joint.position + arm,
@@ -277,31 +300,30 @@ impl Frame {
     }
 
     /// Takes over the rotation and spin of the body above.
-    fn follow(&mut self, above: &Frame) {
-        (self.rotation, self.spin, self.spin_rate) = (above.rotation, above.spin, above.spin_rate);
+    fn follow(&mut self, above: &Frame<T>) {
+        (self.axes, self.spin, self.spin_rate) = (above.axes, above.spin, above.spin_rate);
     }
 
     /// Turns the frame about its own axis 0, 1 or 2.
-    fn turn(&mut self, axis: usize, angle: f64, rate: f64, acceleration: f64) {
-        let (sin, cos) = libm::sincos(angle);
+    fn turn(&mut self, axis: usize, angle: T, rate: T, acceleration: T) {
+        let (sin, cos) = angle.sin_cos();
         let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
-        let (x, y): (Vec3, Vec3) = (self.rotation.column(j).into(), self.rotation.column(k).into());
-        self.rotation.set_column(j, &(x * cos + y * sin));
-        self.rotation.set_column(k, &(y * cos - x * sin));
-        self.axis = self.rotation.column(axis).into();
+        let (x, y) = (self.axes[j], self.axes[k]);
+        self.axes[j] = x * cos + y * sin;
+        self.axes[k] = y * cos - x * sin;
+        self.axis = self.axes[axis];
         self.spin_rate += self.axis * acceleration + self.spin.cross(&self.axis) * rate;
         self.spin += self.axis * rate;
     }
 }
 
-/// Inertia of a body about its mass centre, in its own axes.
-fn inertia(description: &Description, body: usize) -> Matrix3<f64> {
-    // Rows for columns: it is symmetric.
-    Matrix3::from(description.bodies[body].inertia)
+/// The matrix with these columns times a vector.
+fn combined<T: Scalar>(columns: &[Vec3<T>; 3], v: &Vec3<T>) -> Vec3<T> {
+    columns[0] * v.x + columns[1] * v.y + columns[2] * v.z
 }
 
-fn unit(k: usize) -> Vec3 {
+fn unit<T: Scalar>(k: usize) -> Vec3<T> {
     let mut v = Vec3::zeros();
-    v[k] = 1.0;
+    v[k] = T::from(1.0);
     v
 }

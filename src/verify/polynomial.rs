@@ -5,27 +5,29 @@
 //! for a value and a rate), p(s) = c₀ + c₁(s − s₀) + c₂(s − s₀)(s − s₁) + …, where the cₖ are divided
 //! differences. One interior value makes the paper's fourth order; any number is allowed.
 
+use super::scalar::Scalar;
 use crate::motion::HalfStep;
 
 /// The prescribed coordinates of one half step as functions of time.
 #[derive(Clone, Debug)]
-pub struct Polynomials {
-    duration: f64,
-    nodes: Vec<f64>,
+pub struct Polynomials<T = f64> {
+    duration: T,
+    nodes: Vec<T>,
     /// Divided differences, one list of `nodes.len()` per coordinate.
-    differences: Vec<f64>,
+    differences: Vec<T>,
 }
 
-impl Polynomials {
+impl<T: Scalar> Polynomials<T> {
     /// From values and rates; a number that is missing in a list makes its coordinate undefined.
-    pub fn new(half_step: &HalfStep) -> Self {
+    pub fn new(half_step: &HalfStep<T>) -> Self {
         let interior = half_step.q_interior.len();
-        let mut nodes = vec![0.0, 0.0];
-        nodes.extend((1..=interior).map(|k| k as f64 / (interior + 1) as f64));
-        nodes.extend([1.0, 1.0]);
+        let (zero, one) = (T::zero(), T::from(1.0));
+        let mut nodes = vec![zero, zero];
+        nodes.extend((1..=interior).map(|k| T::from(k as f64) / T::from((interior + 1) as f64)));
+        nodes.extend([one, one]);
         let mut differences = Vec::new();
         for k in 0..half_step.q_initial.len() {
-            let of = |list: &[f64]| list.get(k).copied().unwrap_or(f64::NAN);
+            let of = |list: &[T]| list.get(k).copied().unwrap_or(T::from(f64::NAN));
             let (first, last) = (of(&half_step.q_initial), of(&half_step.q_final));
             let mut values = vec![first, first];
             values.extend(half_step.q_interior.iter().map(|q| of(q)));
@@ -37,28 +39,30 @@ impl Polynomials {
     }
 
     /// Q, Q̇ and Q̈ of coordinate `k` at time `t`; s, rad, rad/s, rad/s².
-    pub fn at(&self, k: usize, t: f64) -> [f64; 3] {
+    pub fn at(&self, k: usize, t: T) -> [T; 3] {
         let s = t / self.duration;
         let count = self.nodes.len();
-        let [mut value, mut slope, mut curvature] = [0.0; 3];
+        let [mut value, mut slope, mut curvature] = [T::zero(); 3];
         for (c, node) in self.differences[k * count..][..count].iter().zip(&self.nodes).rev() {
-            let x = s - node;
-            curvature = curvature * x + 2.0 * slope;
+            let x = s - *node;
+            curvature = curvature * x + slope.scale(2.0);
             slope = slope * x + value;
-            value = value * x + c;
+            value = value * x + *c;
         }
         [value, slope / self.duration, curvature / (self.duration * self.duration)]
     }
 }
 
 /// Divided differences of `values`; `rates` are the derivatives at the double first and last node.
-fn divided_differences(nodes: &[f64], mut values: Vec<f64>, rates: [f64; 2]) -> Vec<f64> {
+fn divided_differences<T: Scalar>(nodes: &[T], mut values: Vec<T>, rates: [T; 2]) -> Vec<T> {
     let n = nodes.len();
     for order in 1..n {
         // From the end, so that the lower orders a difference needs are still there.
         for k in (order..n).rev() {
+            // Only the first two nodes are the same, and the last two.
+            let double = order == 1 && (k == 1 || k == n - 1);
             let gap = nodes[k] - nodes[k - order];
-            values[k] = if gap == 0.0 { rates[usize::from(k > 1)] } else { (values[k] - values[k - 1]) / gap };
+            values[k] = if double { rates[usize::from(k > 1)] } else { (values[k] - values[k - 1]) / gap };
         }
     }
     values

@@ -4,6 +4,7 @@ use super::constraint::{Constraint, Tally};
 use super::cycle::{closure, stance_leg, transition};
 use super::error::{VerifyError, check};
 use super::grid::{Totals, evaluate};
+use super::numbers::Numbers;
 use super::phase::Phase;
 use crate::model::Description;
 use crate::motion::{Costs, Motion};
@@ -82,9 +83,11 @@ pub fn verify(description: &Description, motion: &Motion, speed: f64, grid: usiz
     for (i, half_step) in motion.half_steps.iter().enumerate() {
         let mut tally = Tally::new(description.joints(), i + 1);
         let mut phase = Phase::new(description, half_step, stance_leg(description, i), i + 1)?;
-        totals.push(evaluate(description, &mut phase, grid, &mut tally)?);
-        cycle_error = cycle_error.max(closure(half_step, phase.beta_end()));
-        cycle_error = cycle_error.max(transition(description, motion, i, &mut tally)?);
+        totals.push(evaluate(&mut phase, grid, &mut tally)?);
+        let at_impact = |constraint, margin| tally.note(constraint, margin, half_step.duration);
+        let gaps = transition(description, Numbers::new(description), &motion.half_steps, i, at_impact)?;
+        let all = gaps.into_iter().chain(closure(half_step, phase.beta_end()));
+        cycle_error = all.fold(cycle_error, |worst, gap| worst.max(gap.abs()));
         let [shortest, longest] = description.limits.half_step_duration;
         tally.note(Constraint::Shortest, half_step.duration - shortest, half_step.duration);
         tally.note(Constraint::Longest, longest - half_step.duration, half_step.duration);

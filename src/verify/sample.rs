@@ -2,8 +2,9 @@
 
 use super::cycle::stance_leg;
 use super::error::{VerifyError, check};
+use super::instants::State;
 use super::multibody::Vec3;
-use super::phase::{Phase, State};
+use super::phase::Phase;
 use crate::model::Description;
 use crate::motion::Motion;
 use serde::{Deserialize, Serialize};
@@ -36,7 +37,7 @@ pub fn sample(description: &Description, motion: &Motion, points: usize) -> Resu
     check(description, motion, points)?;
     let mut samples = Vec::with_capacity(points * motion.half_steps.len());
     let mut state = State::new(description);
-    let mut foot = Vec3::zeros();
+    let mut foot: Vec3 = Vec3::zeros();
     for (i, half_step) in motion.half_steps.iter().enumerate() {
         let mut phase = Phase::new(description, half_step, stance_leg(description, i), i + 1)?;
         for k in 0..points {

@@ -12,6 +12,8 @@
 //! F = Σ f, and the torque of a joint is the moment about its axis of all it carries (eq. 5).
 
 use super::multibody::{Multibody, Vec3};
+use super::numbers::Numbers;
+use super::scalar::Scalar;
 use crate::model::{Description, Rotation};
 
 /// f1 below this share of (mass × leg²) counts as zero.
@@ -19,36 +21,42 @@ const VANISHING: f64 = 1e-9;
 
 /// The mechanism on one leg, with room for what each body contributes.
 #[derive(Clone, Debug)]
-pub struct Support<'a> {
-    pub multibody: Multibody<'a>,
+pub struct Support<'a, T = f64> {
+    pub multibody: Multibody<'a, T>,
     leg: usize,
-    /// World axis of the free direction.
-    axis: Vec3,
-    loads: Vec<Load>,
+    /// World axis of the free direction: 0, 1 or 2.
+    axis: usize,
+    loads: Vec<Load<T>>,
     /// Force and moment about the platform's mass centre of each body with all that it carries.
-    carried: Vec<(Vec3, Vec3)>,
+    carried: Vec<(Vec3<T>, Vec3<T>)>,
     smallest_f1: f64,
 }
 
 /// Inertial force (gravity included) and moment of a body, as if β̈ were 0, and what β̈ = 1 adds.
 #[derive(Clone, Copy, Debug)]
-struct Load {
-    force: Vec3,
-    moment: Vec3,
-    force_per_beta: Vec3,
-    moment_per_beta: Vec3,
+struct Load<T> {
+    force: Vec3<T>,
+    moment: Vec3<T>,
+    force_per_beta: Vec3<T>,
+    moment_per_beta: Vec3<T>,
 }
 
 impl<'a> Support<'a> {
     pub fn new(description: &'a Description, leg: usize) -> Self {
-        let axis = if description.rotation == Rotation::Roll { Vec3::x() } else { Vec3::z() };
+        Support::with(description, Numbers::new(description), leg)
+    }
+}
+
+impl<'a, T: Scalar> Support<'a, T> {
+    /// The mechanism of `description` with other numbers.
+    pub fn with(description: &'a Description, numbers: Numbers<T>, leg: usize) -> Self {
         let zero = Vec3::zeros();
         let load = Load { force: zero, moment: zero, force_per_beta: zero, moment_per_beta: zero };
         let length = leg_length(description);
         Support {
-            multibody: Multibody::new(description),
+            multibody: Multibody::with(description, numbers),
             leg,
-            axis,
+            axis: if description.rotation == Rotation::Roll { 0 } else { 2 },
             loads: vec![load; description.bodies.len()],
             carried: vec![(zero, zero); description.bodies.len()],
             smallest_f1: VANISHING * description.total_mass() * length * length,
@@ -56,21 +64,22 @@ impl<'a> Support<'a> {
     }
 
     /// β̈ by eq. 10; also written into `qdd`, whose other entries are Q̈. `None` where f1 vanishes.
-    pub fn accelerate(&mut self, q: &[f64], qd: &[f64], qdd: &mut [f64]) -> Option<f64> {
+    pub fn accelerate(&mut self, q: &[T], qd: &[T], qdd: &mut [T]) -> Option<T> {
         let Support { multibody, leg, axis, loads, smallest_f1, .. } = self;
         let description = multibody.description();
         let beta = description.unactuated;
-        qdd[beta] = 0.0;
+        qdd[beta] = T::zero();
         multibody.set(q, qd, qdd);
         let stance = multibody.foot(*leg);
         let stance_body = description.legs[*leg].foot_body;
         let of_stance = |k| multibody.partial_velocity(k, stance_body, &stance.position);
         let beta_of_stance = of_stance(beta);
-        let (mut balance, mut f1) = (0.0, 0.0);
-        for (b, (body, load)) in description.bodies.iter().zip(loads).enumerate() {
+        let (mut balance, mut f1) = (T::zero(), T::zero());
+        let numbers = multibody.numbers();
+        for (b, (body, load)) in numbers.bodies.iter().zip(loads).enumerate() {
             let com = multibody.com(b);
             let mut acceleration = com.acceleration - stance.acceleration;
-            acceleration.y += description.gravity;
+            acceleration.y += numbers.gravity;
             let partial = |k| multibody.partial_velocity(k, b, &com.position);
             *load = Load {
                 force: acceleration * body.mass,
@@ -78,11 +87,12 @@ impl<'a> Support<'a> {
                 force_per_beta: (partial(beta) - beta_of_stance) * body.mass,
                 moment_per_beta: multibody.spin_momentum(b, &multibody.partial_spin(beta, b)),
             };
-            let velocity = axis.cross(&(com.position - stance.position));
-            balance += load.force.dot(&velocity) + load.moment.dot(axis);
-            f1 += load.force_per_beta.dot(&velocity) + load.moment_per_beta.dot(axis);
+            let arm = com.position - stance.position;
+            balance += moment_about(*axis, &arm, &load.force) + load.moment[*axis];
+            f1 += moment_about(*axis, &arm, &load.force_per_beta) + load.moment_per_beta[*axis];
         }
-        if f1.is_nan() || f1.abs() <= *smallest_f1 {
+        let magnitude = f1.least_magnitude();
+        if magnitude.is_nan() || magnitude <= *smallest_f1 {
             return None;
         }
         let acceleration = -balance / f1;
@@ -92,7 +102,7 @@ impl<'a> Support<'a> {
 
     /// The torque of every joint, N·m, and the reaction on the stance foot, N, for the state of the
     /// last [`Support::accelerate`], whose `qdd` is complete.
-    pub fn torques(&mut self, qdd: &[f64], torques: &mut [f64]) -> Vec3 {
+    pub fn torques(&mut self, qdd: &[T], torques: &mut [T]) -> Vec3<T> {
         let description = self.multibody.description();
         let beta = qdd[description.unactuated];
         let mut reaction = Vec3::zeros();
@@ -121,10 +131,17 @@ impl<'a> Support<'a> {
                 moment -= stance.cross(&reaction);
             }
             let (axis, joint) = self.multibody.axis(k);
-            torques[k] = axis.dot(&(moment - joint.cross(&force))) + description.joints[k].rotor_inertia * qdd[k];
+            torques[k] =
+                axis.dot(&(moment - joint.cross(&force))) + self.multibody.numbers().joints[k].rotor_inertia * qdd[k];
         }
         reaction
     }
+}
+
+/// Component of the moment of a force about a world axis.
+fn moment_about<T: Scalar>(axis: usize, arm: &Vec3<T>, force: &Vec3<T>) -> T {
+    let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
+    force[k] * arm[j] - force[j] * arm[k]
 }
 
 /// Length of the stretched leg 1, m: the unit in which lengths are judged.

@@ -1,0 +1,96 @@
+//! Single support as a function of t, β and β̇: all that happens at an instant.
+
+use super::multibody::Vec3;
+use super::numbers::Numbers;
+use super::polynomial::Polynomials;
+use super::scalar::Scalar;
+use super::support::Support;
+use crate::model::Description;
+use crate::motion::HalfStep;
+
+/// The instants of a half step: Q(t) is prescribed, β and β̇ come from outside.
+#[derive(Clone, Debug)]
+pub struct Instants<'a, T = f64> {
+    support: Support<'a, T>,
+    polynomials: Polynomials<T>,
+    leg: usize,
+}
+
+/// All that happens at one instant. Positions and velocities are taken from the stance foot, in world axes.
+#[derive(Clone, Debug)]
+pub struct State<T = f64> {
+    pub q: Vec<T>,
+    pub qd: Vec<T>,
+    pub qdd: Vec<T>,
+    /// Of every joint, N·m.
+    pub torques: Vec<T>,
+    /// Reaction on the stance foot, N.
+    pub force: Vec3<T>,
+    /// The platform's mass centre, m.
+    pub platform: Vec3<T>,
+    /// The swing foot, m.
+    pub swing: Vec3<T>,
+    pub swing_velocity: Vec3<T>,
+}
+
+impl<T: Scalar> State<T> {
+    pub fn new(description: &Description) -> Self {
+        let (n, joints) = (description.orientations(), description.joints());
+        let (q, zero) = (vec![T::zero(); n], Vec3::zeros());
+        State {
+            qd: q.clone(),
+            qdd: q.clone(),
+            q,
+            torques: vec![T::zero(); joints],
+            force: zero,
+            platform: zero,
+            swing: zero,
+            swing_velocity: zero,
+        }
+    }
+}
+
+impl<'a, T: Scalar> Instants<'a, T> {
+    /// Of a half step on `leg`, whose lists have a number for every prescribed coordinate.
+    pub fn new(description: &'a Description, numbers: Numbers<T>, half_step: &HalfStep<T>, leg: usize) -> Self {
+        let support = Support::with(description, numbers, leg);
+        Instants { support, polynomials: Polynomials::new(half_step), leg }
+    }
+
+    pub fn description(&self) -> &'a Description {
+        self.support.multibody.description()
+    }
+
+    pub fn numbers(&self) -> &Numbers<T> {
+        self.support.multibody.numbers()
+    }
+
+    /// β̈ by eq. 10 at time `t`; leaves q, q̇ and q̈ in `state`. `None` where f1 vanishes.
+    pub fn accelerate(&mut self, t: T, [beta, betad]: [T; 2], state: &mut State<T>) -> Option<T> {
+        let description = self.description();
+        for k in 0..description.prescribed() {
+            let at = description.prescribed_index(k);
+            [state.q[at], state.qd[at], state.qdd[at]] = self.polynomials.at(k, t);
+        }
+        state.q[description.unactuated] = beta;
+        state.qd[description.unactuated] = betad;
+        self.support.accelerate(&state.q, &state.qd, &mut state.qdd)
+    }
+
+    /// Everything at time `t`, into `state`; returns β̈. `None` where f1 vanishes.
+    pub fn at(&mut self, t: T, beta: [T; 2], state: &mut State<T>) -> Option<T> {
+        let acceleration = self.accelerate(t, beta, state)?;
+        state.force = self.support.torques(&state.qdd, &mut state.torques);
+        let stance = self.support.multibody.foot(self.leg);
+        let swing = self.support.multibody.foot(1 - self.leg);
+        state.platform = -stance.position;
+        state.swing = swing.position - stance.position;
+        state.swing_velocity = swing.velocity - stance.velocity;
+        if !self.description().lateral {
+            // How deep the hips are does not matter in the plane.
+            state.platform.z = T::zero();
+            state.swing.z = T::zero();
+        }
+        Some(acceleration)
+    }
+}

@@ -1,0 +1,74 @@
+//! What is left of every limit at an instant (§4.2, §6.1): the inequalities, in numbers of any kind.
+
+use super::constraint::Constraint;
+use super::instants::State;
+use super::multibody::Vec3;
+use super::numbers::Numbers;
+use super::scalar::Scalar;
+use super::support::leg_length;
+use crate::model::Description;
+
+/// The natural units of margins; see [`constraint`](super::constraint).
+#[derive(Clone, Copy, Debug)]
+pub struct Units {
+    /// Of forces, N.
+    pub weight: f64,
+    /// Of impulses: the momentum at 1 m/s, N·s.
+    pub momentum: f64,
+    /// Of lengths, m.
+    pub leg: f64,
+}
+
+impl Units {
+    pub fn new(description: &Description) -> Units {
+        let momentum = description.total_mass();
+        Units { weight: momentum * description.gravity, momentum, leg: leg_length(description) }
+    }
+
+    /// Margins of what must hold at every instant, but for the clearance.
+    pub fn margins<T: Scalar>(&self, numbers: &Numbers<T>, state: &State<T>, mut note: impl FnMut(Constraint, T)) {
+        let one = T::from(1.0);
+        for (j, joint) in numbers.joints.iter().enumerate() {
+            let load = state.torques[j].abs() / joint.max_torque;
+            note(Constraint::Torque(j), one - load);
+            let fastest = joint.unloaded_speed - (joint.unloaded_speed - joint.loaded_speed) * load;
+            note(Constraint::Speed(j), (fastest - state.qd[j].abs()) / joint.unloaded_speed);
+            note(Constraint::LowerStop(j), state.q[j] - joint.range[0]);
+            note(Constraint::UpperStop(j), joint.range[1] - state.q[j]);
+        }
+        let weight = T::from(self.weight);
+        note(Constraint::VerticalForce, (state.force.y - numbers.min_vertical_force) / weight);
+        note(Constraint::Friction, (numbers.friction * state.force.y - tangential(&state.force)) / weight);
+        note(Constraint::PlatformHeight, (state.platform.y - numbers.min_platform_height) / T::from(self.leg));
+    }
+
+    /// Margins of an impact.
+    pub fn impact<T: Scalar>(
+        &self,
+        numbers: &Numbers<T>,
+        impulse: &Vec3<T>,
+        leaving: &Vec3<T>,
+        mut note: impl FnMut(Constraint, T),
+    ) {
+        let momentum = T::from(self.momentum);
+        note(Constraint::VerticalImpulse, impulse.y / momentum);
+        note(Constraint::ImpulseFriction, (numbers.friction * impulse.y - tangential(impulse)) / momentum);
+        note(Constraint::Leaving, leaving.y);
+    }
+}
+
+/// Height of the swing foot above the parabola 4 h s (1 − s), m, in the share `s` of the half step.
+pub fn clearance<T: Scalar>(numbers: &Numbers<T>, state: &State<T>, s: T) -> T {
+    state.swing.y - numbers.swing_clearance * (T::from(4.0) * s * (T::from(1.0) - s))
+}
+
+/// How much faster than the parabola the swing foot rises at the begin or falls at the end of a half step, m per half step.
+pub fn steepness<T: Scalar>(numbers: &Numbers<T>, state: &State<T>, duration: T, at_end: bool) -> T {
+    let rise = state.swing_velocity.y * duration;
+    (if at_end { -rise } else { rise }) - T::from(4.0) * numbers.swing_clearance
+}
+
+/// Magnitude of the part along the ground.
+pub fn tangential<T: Scalar>(force: &Vec3<T>) -> T {
+    (force.x * force.x + force.z * force.z).sqrt()
+}

@@ -1,0 +1,59 @@
+//! The numbers that a motion is evaluated with.
+//!
+//! The physics is written once, for any of them: plain numbers give receipts, dual numbers ([`dual`](super::dual))
+//! exact derivatives, and sets of numbers or functions of time proofs.
+
+use nalgebra::{ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign};
+use num_traits::Zero;
+use std::ops::Neg;
+
+/// A field with the functions that rigid-body dynamics takes.
+pub trait Scalar:
+    nalgebra::Scalar
+    + Copy
+    + Zero
+    + ClosedAddAssign
+    + ClosedSubAssign
+    + ClosedMulAssign
+    + ClosedDivAssign
+    + Neg<Output = Self>
+    + From<f64>
+{
+    fn sin_cos(self) -> (Self, Self);
+    fn sqrt(self) -> Self;
+    fn abs(self) -> Self;
+    /// Times a plain number.
+    fn scale(self, factor: f64) -> Self {
+        self * Self::from(factor)
+    }
+    /// The number by which choices are made: step sizes, pivots, which of two cases.
+    fn value(self) -> f64;
+    /// What |x| certainly is not below; NaN where x is not a number.
+    fn least_magnitude(self) -> f64;
+}
+
+impl Scalar for f64 {
+    fn sin_cos(self) -> (f64, f64) {
+        libm::sincos(self)
+    }
+
+    fn sqrt(self) -> f64 {
+        f64::sqrt(self)
+    }
+
+    fn abs(self) -> f64 {
+        f64::abs(self)
+    }
+
+    fn scale(self, factor: f64) -> f64 {
+        self * factor
+    }
+
+    fn value(self) -> f64 {
+        self
+    }
+
+    fn least_magnitude(self) -> f64 {
+        f64::abs(self)
+    }
+}

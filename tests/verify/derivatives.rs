@@ -1,0 +1,62 @@
+//! The same physics in dual numbers: derivatives in the robot's numbers, through the integration.
+
+use crate::motions::{gaits, stepping};
+use piaffe::model::Description;
+use piaffe::motion::HalfStep;
+use piaffe::verify::constraint::Constraint;
+use piaffe::verify::dual::Dual;
+use piaffe::verify::instants::State;
+use piaffe::verify::margins::Units;
+use piaffe::verify::numbers::Numbers;
+use piaffe::verify::phase::Phase;
+use piaffe::verify::scalar::Scalar;
+
+/// Everything about the end of a half step on leg 1: (β, β̇), then all margins.
+fn outcome<T: Scalar>(d: &Description, numbers: Numbers<T>, half_step: &HalfStep<T>) -> Vec<T> {
+    let mut phase = Phase::with(d, numbers, half_step, 0, 1).unwrap();
+    let mut state = State::new(d);
+    phase.at(phase.duration, &mut state).unwrap();
+    let mut all = phase.beta_end().to_vec();
+    Units::new(d).margins(phase.numbers(), &state, |constraint, margin| {
+        // Across the plane a force of exactly 0 has no direction.
+        if constraint != Constraint::Friction || state.force.x.value().abs() > 1.0 {
+            all.push(margin);
+        }
+    });
+    all
+}
+
+/// A robot with its first thigh heavier by x[0], the shin's mass centre lower by x[1], and β̇ greater by x[2] at the begin.
+fn altered<T: Scalar>(d: &Description, half_step: &HalfStep, x: [T; 3]) -> Vec<T> {
+    let mut numbers = Numbers::<T>::new(d);
+    numbers.bodies[1].mass += x[0];
+    numbers.bodies[2].com.y -= x[1];
+    numbers.joints[1].max_torque += x[0];
+    let mut half_step = half_step.cast::<T>();
+    half_step.betad_initial += x[2];
+    outcome(d, numbers, &half_step)
+}
+
+#[test]
+fn duals_differentiate_a_whole_half_step() {
+    for gait in gaits() {
+        let d = gait.description();
+        let half_step = &stepping(d).half_steps[0];
+        let exact = altered(d, half_step, [0, 1, 2].map(|k| Dual::<f64, 3>::variable(0.0, k)));
+        for (k, h) in [1e-4, 1e-5, 1e-4].into_iter().enumerate() {
+            let [less, more] = [-h, h].map(|h| {
+                let mut x = [0.0; 3];
+                x[k] = h;
+                altered(d, half_step, x)
+            });
+            for ((dual, less), more) in exact.iter().zip(less).zip(more) {
+                let found = (more - less) / (2.0 * h);
+                let scale = dual.d[k].abs().max(1.0);
+                assert!((found - dual.d[k]).abs() < 1e-5 * scale, "{}, {k}: {found} and {}", d.gait, dual.d[k]);
+            }
+        }
+        // The values are those of plain numbers, to the bit.
+        let values: Vec<f64> = exact.iter().map(|x| x.x).collect();
+        assert_eq!(values, altered(d, half_step, [0.0; 3]));
+    }
+}
