@@ -1,5 +1,6 @@
 //! A result as it leaves the program: what was asked, what was found, and its receipt.
 
+use crate::certificate::Certificate;
 use crate::cycle::Label;
 use crate::model::Gait;
 use crate::motion::{Costs, Criterion, HalfStep, Motion};
@@ -55,6 +56,9 @@ pub struct GaitResult {
     #[serde(default)]
     pub variables: Vec<HalfStep>,
     pub receipt: Option<Receipt>,
+    /// What is proven between the instants of the receipt.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Certificate>,
     #[serde(default)]
     pub peaks: Vec<JointPeak>,
     /// For an infeasible problem: the constraints that conflict, worst first.
@@ -176,6 +180,7 @@ impl GaitResult {
             polynomial_order: d.polynomial_order,
             variables: Vec::new(),
             receipt: None,
+            certificate: None,
             peaks: Vec::new(),
             conflicts: Vec::new(),
             nearest_speed: None,

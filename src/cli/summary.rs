@@ -1,5 +1,6 @@
 //! A result for a person.
 
+use piaffe::certificate::Certificate;
 use piaffe::model::Description;
 use piaffe::motion::Criterion;
 use piaffe::result::{GaitResult, Status};
@@ -8,6 +9,20 @@ use std::io::Write;
 /// Motor speeds are read in rev/min.
 fn rev_per_min(joint_speed: f64, gear: f64) -> f64 {
     joint_speed * gear * 60.0 / std::f64::consts::TAU
+}
+
+/// A certificate in a line.
+fn standing(c: &Certificate) -> String {
+    if c.is_certified() {
+        let pieces: usize = c.half_steps.iter().map(|h| h.evaluations).sum();
+        return format!("certified: at no time is a margin below -{:.0e} (proven on {pieces} pieces)", c.tolerance);
+    }
+    let gaps = c.gaps.iter().map(|gap| {
+        let verdict = if gap.violated { "broken" } else { "unproven" };
+        format!("{} {verdict} in half step {} from {:.6} to {:.6} s", gap.constraint, gap.half_step, gap.from, gap.to)
+    });
+    let open = c.cycle_error.is_none_or(|error| error > c.tolerance).then(|| "cycle not proven to close".to_string());
+    format!("sampled: {}", gaps.chain(open).collect::<Vec<_>>().join("\n                  "))
 }
 
 /// Prints all there is to know about a result.
@@ -66,6 +81,9 @@ pub fn print(description: &Description, r: &GaitResult) -> std::io::Result<()> {
             "  receipt         largest violation {:.1e}, cycle error {:.1e}, KKT residual {:.1e} ({} points per half step)",
             receipt.max_violation, receipt.cycle_error, receipt.kkt_residual, receipt.grid
         )?;
+        if let Some(certificate) = &r.certificate {
+            writeln!(out, "  certificate     {}", standing(certificate))?;
+        }
         let active: Vec<String> = receipt
             .findings
             .iter()

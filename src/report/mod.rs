@@ -4,6 +4,7 @@
 //! drawing; `scene` is what they are made of, `svg` and `pdf` how it is written, `page` the page.
 
 mod atlas;
+mod certificate;
 mod envelope;
 mod figure;
 mod font;

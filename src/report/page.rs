@@ -4,7 +4,7 @@ use super::figure::Figure;
 use super::font::Weight;
 use super::subject::{Subject, spaced};
 use super::words::meaning;
-use super::{Report, ink, player, svg};
+use super::{Report, certificate, ink, player, svg};
 use crate::motion::Criterion;
 use crate::result::{GaitResult, Status};
 use base64::Engine;
@@ -171,13 +171,13 @@ fn row(report: &Report, r: &GaitResult) -> Markup {
 }
 
 /// Powers of ten as a reader writes them.
-fn scientific(value: f64) -> Markup {
+pub(super) fn scientific(value: f64) -> Markup {
     if value == 0.0 {
         return html! { "0" };
     }
     let text = format!("{value:.1e}");
     let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-    html! { (mantissa) "·10" sup { (exponent.replace('-', "−")) } }
+    html! { (mantissa.replace('-', "−")) "·10" sup { (exponent.replace('-', "−")) } }
 }
 
 fn section(s: &Subject, figures: &[Figure]) -> Markup {
@@ -270,6 +270,7 @@ fn receipt(r: &GaitResult) -> Markup {
                 dt { "distance from a closed cycle" } dd { (scientific(receipt.cycle_error)) " rad, rad/s" }
                 dt { "first-order optimality (KKT)" } dd { (scientific(receipt.kkt_residual)) }
             }
+            @if let Some(c) = &r.certificate { (certificate::section(c)) }
             h3 { "Limits without room to spare" }
             @if receipt.findings.is_empty() { p { "None: all limits have room." } }
             ul { @for f in &receipt.findings {

@@ -38,5 +38,6 @@ pub mod support;
 mod tableau;
 
 pub use error::VerifyError;
+pub(crate) use error::{SMALLEST_GRID, check};
 pub use receipt::{Finding, JointPeak, Receipt, verify};
 pub use sample::{Sample, sample};
