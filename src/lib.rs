@@ -14,6 +14,7 @@ pub mod instant;
 mod lgl;
 pub mod model;
 pub mod motion;
+pub mod optimality;
 mod polynomial;
 pub mod readback;
 pub mod report;

@@ -52,6 +52,7 @@ mod eigen;
 mod kkt;
 mod merit;
 mod minimize;
+mod multipliers;
 mod objective;
 mod options;
 mod problem;
@@ -65,6 +66,7 @@ mod trial;
 
 pub use minimize::minimize;
 pub use objective::{Objective, Redirected};
+pub use multipliers::{Multipliers, multipliers};
 pub use options::{Control, Iteration, Kind, Options, Subproblems};
 pub use problem::{Problem, Undefined, Values};
 pub use status::{Conflict, KktResidual, Solution, Status};
