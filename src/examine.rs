@@ -2,7 +2,9 @@
 
 use crate::certificate::certify;
 use crate::model::Gait;
+use crate::optimality::optimality;
 use crate::result::GaitResult;
+use crate::stability::stability;
 
 impl GaitResult {
     /// Examines the motion and adds what is found; one that is no optimum is left as it is.
@@ -11,5 +13,7 @@ impl GaitResult {
     pub fn examine(&mut self, gait: &dyn Gait) {
         let Some(motion) = self.motion() else { return };
         self.certificate = certify(gait.description(), &motion, self.speed).ok();
+        self.stability = stability(gait, &motion).ok();
+        self.optimality = optimality(gait, self.criterion, self.speed, &motion).ok();
     }
 }

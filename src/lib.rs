@@ -21,6 +21,7 @@ pub mod report;
 pub mod result;
 pub mod search;
 pub mod sqp;
+pub mod stability;
 pub mod stance;
 pub mod states;
 pub mod trajectory;

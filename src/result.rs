@@ -4,9 +4,11 @@ use crate::certificate::Certificate;
 use crate::cycle::Label;
 use crate::model::Gait;
 use crate::motion::{Costs, Criterion, HalfStep, Motion};
+use crate::optimality::Optimality;
 use crate::search::local::Local;
 use crate::search::multi_start::Found;
 use crate::sqp;
+use crate::stability::Stability;
 use crate::verify::{Finding, JointPeak, verify};
 use serde::{Deserialize, Serialize};
 
@@ -59,6 +61,12 @@ pub struct GaitResult {
     /// What is proven between the instants of the receipt.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub certificate: Option<Certificate>,
+    /// The first-order conditions, derived from the motion alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub optimality: Option<Optimality>,
+    /// What becomes of a push.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stability: Option<Stability>,
     #[serde(default)]
     pub peaks: Vec<JointPeak>,
     /// For an infeasible problem: the constraints that conflict, worst first.
@@ -181,6 +189,8 @@ impl GaitResult {
             variables: Vec::new(),
             receipt: None,
             certificate: None,
+            optimality: None,
+            stability: None,
             peaks: Vec::new(),
             conflicts: Vec::new(),
             nearest_speed: None,

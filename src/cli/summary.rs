@@ -102,6 +102,16 @@ pub fn print(description: &Description, r: &GaitResult) -> std::io::Result<()> {
             )?;
         }
     }
+    if let Some(optimality) = &r.optimality {
+        let dearest = optimality.limits.iter().take(3).map(|p| p.constraint.as_str());
+        let held = dearest.collect::<Vec<_>>().join(", ");
+        let held = if held.is_empty() { "by nothing but the cycle".into() } else { format!("by {held}") };
+        writeln!(out, "  optimality      residual {:.1e} from the motion alone; held {held}", optimality.residual())?;
+    }
+    if let Some(stability) = &r.stability {
+        writeln!(out, "  joints by clock {}", stability.clock)?;
+        writeln!(out, "  joints by phase {}", stability.phase)?;
+    }
     if r.local_optima.len() > 1 {
         writeln!(out, "  local optima    (cost, half steps, how many of {} starts led there)", r.search.starts)?;
         for o in &r.local_optima {

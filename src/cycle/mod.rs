@@ -337,7 +337,7 @@ impl<'a> Cycle<'a> {
 }
 
 /// Where coordinate `k` comes from after a half step: index and sign.
-fn renamed(d: &Description, k: usize) -> (usize, f64) {
+pub(crate) fn renamed(d: &Description, k: usize) -> (usize, f64) {
     match d.half_steps {
         HalfSteps::Mirrored => d.swapped(k),
         HalfSteps::Distinct => (k, 1.0),

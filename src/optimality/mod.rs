@@ -2,7 +2,7 @@
 //!
 //! Θ is rebuilt from the motion and the program is linearized there, with constraints imposed wherever they dip between nodes,
 //! as in the search. But nothing of the search is taken over: the multipliers are fitted to the gradients ([`multipliers`]).
-//! A multiplier is a price: what the criterion would gain per unit by which its constraint is loosened.
+//! A multiplier is a price: what the criterion would gain per unit by which its limit is loosened.
 
 use crate::cycle::{Cycle, Label};
 use crate::model::Gait;
@@ -11,23 +11,25 @@ use crate::search::refine::{dips, probe};
 use crate::sqp::{Multipliers, Undefined, multipliers};
 use serde::{Deserialize, Serialize};
 
-/// Multipliers below this share of the largest are left out of the list.
+/// Prices below this share of the largest are left out.
 const NEGLIGIBLE: f64 = 1e-9;
 
 /// The first-order conditions at a motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Optimality {
-    /// What is left of the criterion's gradient, relative to max(1, ‖∇C‖∞), in scaled variables.
+    /// What the multipliers leave of the criterion's gradient, relative to max(1, ‖∇C‖∞), in scaled variables.
     pub stationarity: f64,
     /// Largest product of a multiplier with its constraint's distance from zero, in the same measure.
     pub complementarity: f64,
     /// Largest violation (scaled) in the nonlinear program.
     pub violation: f64,
-    /// Of the constraints that hold the optimum where it is; those of inequalities by size, after those of equalities.
-    pub multipliers: Vec<Price>,
+    /// Multipliers of the equations: slopes of the optimal criterion in what is required to be zero.
+    pub equations: Vec<Price>,
+    /// Multipliers of the limits that hold the optimum where it is, the largest first.
+    pub limits: Vec<Price>,
 }
 
-/// The multiplier of a constraint.
+/// The multiplier of a constraint at a time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Price {
     pub constraint: String,
@@ -35,8 +37,7 @@ pub struct Price {
     pub half_step: usize,
     /// s.
     pub time: f64,
-    /// Criterion per (scaled) unit of the constraint. That of an inequality is positive; of an equality it is the
-    /// slope of the optimal criterion in the equality's left-hand side.
+    /// Criterion per natural unit of the constraint (s for durations); of limits positive.
     pub value: f64,
 }
 
@@ -45,6 +46,44 @@ impl Optimality {
     pub fn residual(&self) -> f64 {
         self.stationarity.max(self.complementarity)
     }
+}
+
+/// Residuals and multipliers of a motion that is said to minimize `criterion` at `speed` (m/s).
+///
+/// # Errors, Panics
+/// As for [`Linearized::new`].
+pub fn optimality(gait: &dyn Gait, criterion: Criterion, speed: f64, motion: &Motion) -> Result<Optimality, Undefined> {
+    let Linearized { cycle, multipliers, .. } = Linearized::new(gait, criterion, speed, motion)?;
+    let equations = prices(&multipliers.equalities, |i| cycle.equality_label(i));
+    let mut limits = prices(&multipliers.inequalities, |i| cycle.label(i));
+    limits.extend(prices(&multipliers.bounds, |i| cycle.bound_label(i)).into_iter().map(Price::of_bound));
+    limits.sort_by(|a, b| b.value.abs().total_cmp(&a.value.abs()));
+    let largest = limits.first().map_or(0.0, |p| p.value.abs());
+    limits.retain(|p| p.value.abs() > NEGLIGIBLE * largest);
+    let kkt = multipliers.kkt;
+    Ok(Optimality {
+        stationarity: kkt.stationarity,
+        complementarity: kkt.complementarity,
+        violation: kkt.violation,
+        equations,
+        limits,
+    })
+}
+
+impl Price {
+    /// That of a bound: positive at the lower one, negative at the upper.
+    fn of_bound(self) -> Price {
+        let constraint = if self.value > 0.0 { "shortest half step" } else { "longest half step" };
+        Price { constraint: constraint.into(), value: self.value.abs(), ..self }
+    }
+}
+
+fn prices(values: &[f64], label: impl Fn(usize) -> Label) -> Vec<Price> {
+    let price = |(i, value): (usize, &f64)| {
+        let Label { name, half_step, time } = label(i);
+        Price { constraint: name, half_step, time, value: *value }
+    };
+    values.iter().enumerate().filter(|(_, value)| **value != 0.0).map(price).collect()
 }
 
 /// The nonlinear program linearized at a motion, with its multipliers there.
@@ -75,44 +114,4 @@ impl<'a> Linearized<'a> {
         let multipliers = multipliers(&mut cycle, &theta, scale)?;
         Ok(Linearized { cycle, theta, multipliers })
     }
-
-    fn prices(&self) -> Vec<Price> {
-        let (cycle, m) = (&self.cycle, &self.multipliers);
-        let price = |label: Label, value: f64| Price {
-            constraint: label.name,
-            half_step: label.half_step,
-            time: label.time,
-            value,
-        };
-        let list = |values: &[f64], label: &dyn Fn(usize) -> Label| -> Vec<Price> {
-            values.iter().enumerate().filter(|(_, v)| **v != 0.0).map(|(i, v)| price(label(i), *v)).collect()
-        };
-        let equalities = list(&m.equalities, &|i| cycle.equality_label(i));
-        let mut others = list(&m.inequalities, &|i| cycle.label(i));
-        others.extend(list(&m.bounds, &|i| cycle.bound_label(i)));
-        let largest = others.iter().fold(0.0, |largest: f64, p| largest.max(p.value.abs()));
-        others.retain(|p| p.value.abs() > NEGLIGIBLE * largest);
-        others.sort_by(|a, b| b.value.abs().total_cmp(&a.value.abs()));
-        equalities.into_iter().chain(others).collect()
-    }
-}
-
-/// Residuals and multipliers of a motion that is said to minimize `criterion` at `speed` (m/s).
-///
-/// # Errors, Panics
-/// As for [`Linearized::new`].
-pub fn optimality(
-    gait: &dyn Gait,
-    criterion: Criterion,
-    speed: f64,
-    motion: &Motion,
-) -> Result<Optimality, Undefined> {
-    let linearized = Linearized::new(gait, criterion, speed, motion)?;
-    let kkt = linearized.multipliers.kkt;
-    Ok(Optimality {
-        stationarity: kkt.stationarity,
-        complementarity: kkt.complementarity,
-        violation: kkt.violation,
-        multipliers: linearized.prices(),
-    })
 }

@@ -4,7 +4,7 @@ use super::figure::Figure;
 use super::font::Weight;
 use super::subject::{Subject, spaced};
 use super::words::meaning;
-use super::{Report, certificate, ink, player, svg};
+use super::{Report, certificate, ink, player, price, recovery, svg};
 use crate::motion::Criterion;
 use crate::result::{GaitResult, Status};
 use base64::Engine;
@@ -209,6 +209,8 @@ fn section(s: &Subject, figures: &[Figure]) -> Markup {
             }
             (gallery(&name, &figures[1..]))
             (receipt(r))
+            (price::section(r))
+            (recovery::section(r))
             (script(&name, json!({ "walk": player::data(s), "figures": interactive(figures) })))
         }
     }

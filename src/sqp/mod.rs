@@ -65,8 +65,8 @@ mod status;
 mod trial;
 
 pub use minimize::minimize;
-pub use objective::{Objective, Redirected};
 pub use multipliers::{Multipliers, multipliers};
+pub use objective::{Objective, Redirected};
 pub use options::{Control, Iteration, Kind, Options, Subproblems};
 pub use problem::{Problem, Undefined, Values};
 pub use status::{Conflict, KktResidual, Solution, Status};
