@@ -103,9 +103,10 @@ pub fn print(description: &Description, r: &GaitResult) -> std::io::Result<()> {
         }
     }
     if let Some(optimality) = &r.optimality {
-        let dearest = optimality.limits.iter().take(3).map(|p| p.constraint.as_str());
-        let held = dearest.collect::<Vec<_>>().join(", ");
-        let held = if held.is_empty() { "by nothing but the cycle".into() } else { format!("by {held}") };
+        let held = match optimality.holders().as_slice() {
+            [] => "by nothing but the cycle".into(),
+            holders => format!("by {}", holders[..holders.len().min(3)].join(", ")),
+        };
         writeln!(out, "  optimality      residual {:.1e} from the motion alone; held {held}", optimality.residual())?;
     }
     if let Some(stability) = &r.stability {

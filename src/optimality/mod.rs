@@ -46,6 +46,17 @@ impl Optimality {
     pub fn residual(&self) -> f64 {
         self.stationarity.max(self.complementarity)
     }
+
+    /// The limits with a price by name, each once.
+    pub fn holders(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = Vec::new();
+        for price in &self.limits {
+            if !names.contains(&price.constraint.as_str()) {
+                names.push(&price.constraint);
+            }
+        }
+        names
+    }
 }
 
 /// Residuals and multipliers of a motion that is said to minimize `criterion` at `speed` (m/s).
