@@ -86,6 +86,9 @@ fn vanishing(passage: &Passage) -> Option<f64> {
     })
 }
 
+/// How fast a quantity of the posture changes.
+type Rate<'a> = dyn Fn(&Passage, &Instant) -> f64 + 'a;
+
 /// The first quantity that grows all the time, by name.
 fn phase(gait: &dyn Gait, passages: &[Passage]) -> Option<String> {
     let d = gait.description();
@@ -100,13 +103,13 @@ fn phase(gait: &dyn Gait, passages: &[Passage]) -> Option<String> {
         let [at, rate] = platform(gait, p.leg, i);
         at[1] * rate[0] - at[0] * rate[1]
     };
-    let rates: [(&str, &dyn Fn(&Passage, &Instant) -> f64); 4] = [
+    let rates: [(&str, &Rate); 4] = [
         ("forward position of the platform from the stance foot", &|p, i| platform(gait, p.leg, i)[1][0]),
         ("forward position of the mass centre from the stance foot", &|p, i| mass_centre_speed(gait, p.leg, i)),
         ("angle of the line from the stance foot to the platform", &turning),
         (free, &|_, i| i.state.qd[d.unactuated]),
     ];
-    let grows = |rate: &dyn Fn(&Passage, &Instant) -> f64| {
+    let grows = |rate: &Rate| {
         let mut all = passages.iter().flat_map(|p| p.instants.iter().map(|i| rate(p, i)));
         let forward = all.next().unwrap_or(0.0) > 0.0;
         all.all(|rate| if forward { rate > 0.0 } else { rate < 0.0 })
