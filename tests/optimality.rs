@@ -6,7 +6,7 @@ use piaffe::model::Gait;
 use piaffe::motion::{Criterion, Motion};
 use piaffe::optimality::{Optimality, optimality};
 use piaffe::result::KKT_RESIDUAL;
-use piaffe::search::local::{Local, follow};
+use piaffe::search::local::{Local, Task};
 use piaffe::search::multi_start::{Settings, search};
 use piaffe::sqp::Control;
 
@@ -56,7 +56,7 @@ fn a_price_is_what_loosening_the_limit_gains() {
         }
         let cost = |by: f64| {
             let gait = Altered::new(gait, |d| d.limits.swing_clearance += by).unwrap();
-            let near = follow(&gait, criterion, 0.6, &local.theta, &mut |_| Control::Continue);
+            let near = Task { gait: &gait, criterion, speed: 0.6 }.follow(&local.theta, &mut |_| Control::Continue);
             assert!(near.status.is_optimal());
             near.costs.of(criterion)
         };
