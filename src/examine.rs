@@ -1,6 +1,7 @@
 //! What is proven and told about an optimum beyond its receipt: what takes longer than finding it.
 
 use crate::certificate::certify;
+use crate::four_legs::RealLegs;
 use crate::model::Gait;
 use crate::optimality::optimality;
 use crate::result::GaitResult;
@@ -15,5 +16,6 @@ impl GaitResult {
         self.certificate = certify(gait.description(), &motion, self.speed).ok();
         self.stability = stability(gait, &motion).ok();
         self.optimality = optimality(gait, self.criterion, self.speed, &motion).ok();
+        self.real_legs = RealLegs::new(gait, &motion).ok();
     }
 }

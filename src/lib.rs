@@ -9,6 +9,7 @@ pub mod cost;
 pub mod cycle;
 mod examine;
 pub mod export;
+pub mod four_legs;
 pub mod import;
 pub mod instant;
 mod lgl;

@@ -2,6 +2,7 @@
 
 use crate::certificate::Certificate;
 use crate::cycle::Label;
+use crate::four_legs::RealLegs;
 use crate::model::Gait;
 use crate::motion::{Costs, Criterion, HalfStep, Motion};
 use crate::optimality::Optimality;
@@ -69,6 +70,9 @@ pub struct GaitResult {
     pub stability: Option<Stability>,
     #[serde(default)]
     pub peaks: Vec<JointPeak>,
+    /// Whether the real legs can do what the virtual ones do; absent where the build has no model of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub real_legs: Option<RealLegs>,
     /// For an infeasible problem: the constraints that conflict, worst first.
     #[serde(default)]
     pub conflicts: Vec<ConflictEntry>,
@@ -192,6 +196,7 @@ impl GaitResult {
             optimality: None,
             stability: None,
             peaks: Vec::new(),
+            real_legs: None,
             conflicts: Vec::new(),
             nearest_speed: None,
             local_optima: Vec::new(),

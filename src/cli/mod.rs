@@ -5,6 +5,7 @@ mod export;
 mod import;
 mod input;
 mod journal;
+mod lift;
 mod main_job;
 mod manual;
 mod model;
@@ -130,6 +131,23 @@ enum Command {
         #[arg(long, default_value = "-", value_name = "FILE|-")]
         out: String,
     },
+    /// Write the motion of a result for the real legs: platform, joints, torques and the reaction on every foot.
+    ///
+    /// The shares of the feet are those that leave most room within the limits of each.
+    #[command(after_help = "Example:\n  piaffe lift results/amble-energy.json --rate 500 --out amble.csv")]
+    Lift {
+        /// A result as JSON; `-` reads standard input.
+        #[arg(value_name = "FILE|-")]
+        result: String,
+        /// Moments per second.
+        #[arg(long, default_value_t = 1000.0, value_parser = rate, value_name = "HZ")]
+        rate: f64,
+        #[arg(long, value_enum, default_value = "csv")]
+        format: lift::Format,
+        /// `-` is standard output.
+        #[arg(long, default_value = "-", value_name = "FILE|-")]
+        out: String,
+    },
     /// Show results: one page with the walks, all figures, and the receipts in words.
     ///
     /// The page needs neither network nor other files. Every figure is also written as SVG and PDF.
@@ -208,6 +226,7 @@ pub fn run() -> ExitCode {
         Some(Command::Completions { shell }) => manual::completions(shell),
         Some(Command::Manual { out }) => manual::pages(&out),
         Some(Command::Export { result, format, rate, out }) => export::run(&result, format, rate, &out),
+        Some(Command::Lift { result, rate, format, out }) => lift::run(&result, format, rate, &out),
         Some(Command::Report { results, detail, out }) => report::run(&results, detail, &out),
         Some(Command::Sweep { gait, criterion, speeds, folder, starts, seed }) => {
             let settings = piaffe::search::multi_start::Settings { starts: starts as usize, seed };

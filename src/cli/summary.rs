@@ -113,6 +113,11 @@ pub fn print(description: &Description, r: &GaitResult) -> std::io::Result<()> {
         writeln!(out, "  joints by clock {}", stability.clock)?;
         writeln!(out, "  joints by phase {}", stability.phase)?;
     }
+    if let Some(legs) = &r.real_legs {
+        writeln!(out, "  real legs       {}", legs.sentence())?;
+        writeln!(out, "                  least margin {}", legs.support.words())?;
+        writeln!(out, "                  at the impact {}", legs.impact.words())?;
+    }
     if r.local_optima.len() > 1 {
         writeln!(out, "  local optima    (cost, half steps, how many of {} starts led there)", r.search.starts)?;
         for o in &r.local_optima {

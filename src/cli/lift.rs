@@ -1,0 +1,34 @@
+//! `piaffe lift`: the motion of a result, for the real legs.
+
+use super::{input, output};
+use anyhow::Context;
+use clap::ValueEnum;
+use piaffe::four_legs::{Lift, csv, json};
+use piaffe::gaits::GAITS;
+use piaffe::readback::Readback;
+use std::io::Write;
+use std::path::Path;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// A row per moment, a column per number; the row that ends a half step has the impulses.
+    Csv,
+    /// The same, with the impacts by themselves.
+    Json,
+}
+
+/// Writes the lifted motion of the result in `file` (`-`: standard input) to `out` (`-`: standard output).
+pub fn run(file: &str, format: Format, rate: f64, out: &str) -> anyhow::Result<bool> {
+    let Readback { gait, motion, .. } = Readback::new(input::read_json(file)?, GAITS)?;
+    let lift = Lift::at_rate(gait, &motion, rate)?;
+    match format {
+        Format::Json => output::json_to(out, &json(&lift))?,
+        Format::Csv if out == "-" => {
+            let mut stdout = std::io::stdout().lock();
+            let written = stdout.write_all(csv(&lift).as_bytes()).and_then(|()| stdout.flush());
+            output::quiet_when_closed(written).context("cannot write")?;
+        }
+        Format::Csv => output::write_file(Path::new(out), csv(&lift).as_bytes())?,
+    }
+    Ok(true)
+}

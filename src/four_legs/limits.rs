@@ -1,0 +1,145 @@
+//! What every real foot and joint must keep to, as margins that depend on how the reactions are shared.
+//!
+//! Units are those of the receipts: a foot's share of the robot's weight for forces, of its momentum at 1 m/s for impulses;
+//! the joint's greatest torque and its unloaded speed. So with equal shares every real leg has the virtual leg's margins.
+
+use super::posture::{Legs, Posture};
+use super::shares::Shares;
+use nalgebra::{DMatrix, DVector};
+
+/// A limit of §6.1 for one real leg or joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Limit {
+    /// Vertical reaction ≥ the foot's share of the least one; at an impact, vertical impulse ≥ 0.
+    Vertical(usize),
+    /// |tangential| ≤ μ·vertical, of the reaction or of the impulse.
+    Friction(usize),
+    /// |Γ| ≤ greatest torque.
+    Torque(usize),
+    /// |q̇| ≤ unloaded − (unloaded − loaded)·|Γ| / greatest torque.
+    Speed(usize),
+}
+
+/// What a limit leaves, for reactions shared by s: `height(s) − |tangential(s)|`.
+#[derive(Clone, Debug)]
+pub struct Room {
+    pub limit: Limit,
+    pub height: Affine,
+    /// None but for friction.
+    pub tangential: Vec<Affine>,
+}
+
+/// `at + slope · s`.
+#[derive(Clone, Debug)]
+pub struct Affine {
+    pub at: f64,
+    pub slope: DVector<f64>,
+}
+
+/// The limits of a gait's robot.
+pub struct Limits<'a> {
+    pub legs: &'a Legs<'a>,
+}
+
+impl Affine {
+    /// `weights · F` for reactions F that are shared by s.
+    fn of(weights: &DVector<f64>, shares: &Shares) -> Affine {
+        Affine { at: weights.dot(&shares.nearest), slope: shares.squeezes.transpose() * weights }
+    }
+
+    /// `constant + factor · this`.
+    fn mapped(&self, constant: f64, factor: f64) -> Affine {
+        Affine { at: constant + factor * self.at, slope: &self.slope * factor }
+    }
+
+    pub fn value(&self, s: &DVector<f64>) -> f64 {
+        self.at + self.slope.dot(s)
+    }
+}
+
+impl Room {
+    pub fn margin(&self, s: &DVector<f64>) -> f64 {
+        let square: f64 = self.tangential.iter().map(|t| t.value(s).powi(2)).sum();
+        self.height.value(s) - square.sqrt()
+    }
+}
+
+impl Limits<'_> {
+    /// In support: of the feet `stance` and of their legs' joints. `demand` is what torques and reactions add up to,
+    /// `columns` D of these feet.
+    pub fn support(
+        &self,
+        stance: &[usize],
+        posture: &Posture,
+        shares: &Shares,
+        demand: &DVector<f64>,
+        columns: &DMatrix<f64>,
+    ) -> Vec<Room> {
+        let d = self.legs.description;
+        let w = self.legs.whole.description();
+        let weight = w.total_mass() * d.gravity / stance.len() as f64;
+        let least = d.limits.min_vertical_force / stance.len() as f64;
+        let mut rooms = self.feet(stance, posture, shares, weight, least / weight);
+        for joint in stance.iter().flat_map(|leg| w.legs[*leg].joints.clone()) {
+            let motor = &d.joints[self.legs.joints[joint]];
+            let most = motor.max_torque / self.legs.sharing(joint);
+            // Γ = demand − D F.
+            let row = 6 + joint;
+            let torque = Affine::of(&columns.row(row).transpose(), shares).mapped(demand[row], -1.0);
+            let slowed = (motor.unloaded_speed - motor.loaded_speed) / motor.unloaded_speed;
+            let rate = posture.rates()[joint].abs() / motor.unloaded_speed;
+            for sign in [1.0, -1.0] {
+                let used = sign / most;
+                rooms.push(Room::straight(Limit::Torque(joint), torque.mapped(1.0, -used)));
+                rooms.push(Room::straight(Limit::Speed(joint), torque.mapped(1.0 - rate, -slowed * used)));
+            }
+        }
+        rooms
+    }
+
+    /// At the impact of the feet `landing`; no joint takes an impulse.
+    pub fn impact(&self, landing: &[usize], posture: &Posture, shares: &Shares) -> Vec<Room> {
+        let momentum = self.legs.whole.description().total_mass() / landing.len() as f64;
+        self.feet(landing, posture, shares, momentum, 0.0)
+    }
+
+    /// Vertical part above `least` and friction of every foot, in `unit`.
+    fn feet(&self, feet: &[usize], posture: &Posture, shares: &Shares, unit: f64, least: f64) -> Vec<Room> {
+        let up = posture.up();
+        let mut rooms = Vec::new();
+        for (k, leg) in feet.iter().enumerate() {
+            let along = |direction: [f64; 3]| {
+                let mut weights = DVector::zeros(shares.nearest.len());
+                (0..3).for_each(|i| weights[3 * k + i] = direction[i] / unit);
+                Affine::of(&weights, shares)
+            };
+            let vertical = along(up);
+            rooms.push(Room::straight(Limit::Vertical(*leg), vertical.mapped(-least, 1.0)));
+            // The part of each axis of the platform that is tangential to the ground.
+            let tangential = (0..3).map(|i| along([0, 1, 2].map(|j| f64::from(i == j) - up[i] * up[j])));
+            rooms.push(Room {
+                limit: Limit::Friction(*leg),
+                height: vertical.mapped(0.0, self.legs.description.limits.friction),
+                tangential: tangential.collect(),
+            });
+        }
+        rooms
+    }
+
+    /// What a person reads.
+    pub fn name(&self, limit: Limit) -> String {
+        let w = self.legs.whole.description();
+        match limit {
+            Limit::Vertical(leg) => format!("vertical force on {}", w.legs[leg].name),
+            Limit::Friction(leg) => format!("friction of {}", w.legs[leg].name),
+            Limit::Torque(joint) => format!("torque of {}", w.joints[joint].name),
+            Limit::Speed(joint) => format!("torque–speed of {}", w.joints[joint].name),
+        }
+    }
+}
+
+impl Room {
+    fn straight(limit: Limit, height: Affine) -> Room {
+        Room { limit, height, tangential: Vec::new() }
+    }
+}
