@@ -18,6 +18,7 @@ mod plot;
 mod power;
 mod price;
 mod reaction;
+mod real_legs;
 mod recovery;
 mod scale;
 mod scene;
@@ -133,6 +134,7 @@ pub fn figures(s: &Subject) -> Vec<Figure> {
     figures.push(joints::torques(s));
     figures.push(reaction::forces(s));
     figures.push(reaction::friction(s));
+    figures.extend(real_legs::figures(s));
     figures.push(swing::clearance(s));
     figures.extend(joints::angles(s));
     figures.push(joints::speeds(s));

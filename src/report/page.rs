@@ -4,7 +4,7 @@ use super::figure::Figure;
 use super::font::Weight;
 use super::subject::{Subject, spaced};
 use super::words::meaning;
-use super::{Report, certificate, ink, player, price, recovery, svg};
+use super::{Report, certificate, ink, player, price, real_legs, recovery, svg};
 use crate::motion::Criterion;
 use crate::result::{GaitResult, Status};
 use base64::Engine;
@@ -203,7 +203,7 @@ fn section(s: &Subject, figures: &[Figure]) -> Markup {
                         } }
                     }
                     @for f in &figures[..1] { (drawing(&name, f)) }
-                    p.note { "All real legs, to scale. Arrows are the reactions on each foot, dots the paths of the swinging feet. Drag to turn." }
+                    p.note { "All real legs, to scale. Arrows are the reactions, in equal shares on each foot, dots the paths of the swinging feet. Drag to turn." }
                 }
                 (facts(s))
             }
@@ -273,6 +273,7 @@ fn receipt(r: &GaitResult) -> Markup {
                 dt { "first-order optimality (KKT)" } dd { (scientific(receipt.kkt_residual)) }
             }
             @if let Some(c) = &r.certificate { (certificate::section(c)) }
+            @if let Some(legs) = &r.real_legs { (real_legs::section(legs)) }
             h3 { "Limits without room to spare" }
             @if receipt.findings.is_empty() { p { "None: all limits have room." } }
             ul { @for f in &receipt.findings {

@@ -22,7 +22,7 @@ pub fn forces(s: &Subject) -> Figure {
     plot.limits.push(Limit { name: format!("least vertical {least} N"), points: vec![[from, least], [to, least]] });
     let weight = d.total_mass() * d.gravity;
     plot.note = Some(format!("the robot weighs {weight:.1} N"));
-    Figure::plot("forces", &plot, "On the virtual leg in support; each of its real feet has an equal share.")
+    Figure::plot("forces", &plot, "On the virtual leg in support.")
 }
 
 pub fn friction(s: &Subject) -> Figure {

@@ -1,0 +1,220 @@
+//! The real legs behind the virtual ones: kinematics, equal shares, and the best shares against all others.
+
+use piaffe::four_legs::{Equations, Instant, Legs, Lift, Limits, RealLegs, Shares, Verdict, best};
+use piaffe::gaits::GAITS;
+use piaffe::model::Gait;
+use piaffe::motion::{Criterion, Motion};
+use piaffe::result::GaitResult;
+use piaffe::search::multi_start::{Settings, search};
+use piaffe::walk::{Moment, Walk};
+use std::io::Write;
+use std::process::{Command, Stdio};
+
+fn optimum(gait: &dyn Gait, criterion: Criterion) -> (GaitResult, Motion) {
+    let settings = Settings { starts: 1, ..Settings::default() };
+    let found = search(gait, criterion, 0.6, &settings, &|_| {});
+    let result = GaitResult::new(gait, criterion, 0.6, &found, settings.seed, || 0.0);
+    let motion = result.motion().unwrap();
+    (result, motion)
+}
+
+fn gait(key: &str) -> &'static dyn Gait {
+    *GAITS.iter().find(|g| g.description().key == key).unwrap()
+}
+
+/// Every moment of a gait's optimum with what is made of it.
+fn lifted(gait: &'static dyn Gait) -> Vec<(Moment, Instant)> {
+    let (_, motion) = optimum(gait, Criterion::Torque);
+    let walk = Walk::even(gait, &motion, 25).unwrap();
+    let lift = Lift::even(gait, &motion, 25).unwrap();
+    assert_eq!(walk.moments.len(), lift.instants.len());
+    walk.moments.into_iter().zip(lift.instants).collect()
+}
+
+fn close(a: &[f64], b: &[f64], tolerance: f64) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() <= tolerance)
+}
+
+#[test]
+fn feet_are_where_the_walk_has_them_and_those_that_stand_are_at_rest() {
+    for gait in GAITS {
+        let legs = Legs::new(*gait).unwrap();
+        let w = legs.whole.description();
+        for (m, i) in lifted(*gait) {
+            let posture = &i.posture;
+            let mut feet = vec![0.0; w.reactions() * (1 + w.speeds())];
+            legs.whole.feet(&posture.q, &mut feet);
+            let (places, jacobian) = feet.split_at(w.reactions());
+            let mut bias = vec![0.0; w.reactions()];
+            legs.whole.feet_bias(&posture.omega(), &posture.q, posture.rates(), &mut bias);
+            for (real, leg) in w.legs.iter().enumerate() {
+                let members = legs.description.legs[legs.legs[real]].members.iter();
+                let member = members.clone().position(|member| member.name == leg.name).unwrap();
+                let expected = m.chain(legs.description, legs.legs[real], member).pop().unwrap();
+                let place = posture.outside([places[3 * real], places[3 * real + 1], places[3 * real + 2]]);
+                assert!(close(&[0, 1, 2].map(|k| place[k] + posture.position[k]), &expected, 1e-12));
+                if !i.stance.contains(&real) {
+                    continue;
+                }
+                for c in 3 * real..3 * real + 3 {
+                    let along = |u: &[f64]| (0..u.len()).map(|k| jacobian[k * w.reactions() + c] * u[k]).sum::<f64>();
+                    // Equal joint rates of a pair keep its feet together.
+                    assert!(along(&posture.u).abs() < 1e-9, "{} moves", leg.name);
+                    assert!((along(&posture.ud) + bias[c]).abs() < 1e-8, "{} accelerates", leg.name);
+                }
+            }
+            let [w, x, y, z] = posture.quaternion();
+            let turned = [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)];
+            assert!(close(&turned, &posture.axes[0], 1e-12));
+        }
+    }
+}
+
+#[test]
+fn in_curvet_and_trot_each_leg_does_half_and_no_shares_leave_more_room() {
+    for key in ["curvet", "trot"] {
+        let gait = gait(key);
+        let d = gait.description();
+        for criterion in Criterion::ALL {
+            let (_, motion) = optimum(gait, criterion);
+            let receipt = RealLegs::new(gait, &motion).unwrap();
+            assert_eq!(receipt.verdict(), Verdict::EqualShares, "{receipt:?}");
+            assert!(receipt.equal_shares.support < 1e-12 && receipt.equal_shares.impact < 1e-12, "{receipt:?}");
+            assert!((receipt.largest_load - 0.5).abs() < 1e-9);
+        }
+        let legs = Legs::new(gait).unwrap();
+        for (m, i) in lifted(gait) {
+            let half: Vec<f64> = legs.joints.iter().map(|j| m.torque[*j] / 2.0).collect();
+            assert!(close(&i.torque, &half, 1e-9), "{key} at {} s", m.time);
+            let mut margin = f64::INFINITY;
+            for leg in &i.stance {
+                assert!(close(&i.reactions[*leg], &m.force.map(|f| f / 2.0), 1e-9));
+            }
+            // The virtual leg's own margins, from its own numbers.
+            let weight = d.total_mass() * d.gravity;
+            margin = margin.min((m.force[1] - d.limits.min_vertical_force) / weight);
+            margin = margin.min((d.limits.friction * m.force[1] - m.force[0].hypot(m.force[2])) / weight);
+            for j in d.legs[m.stance].first_joint..d.legs[m.stance].end_joint {
+                let joint = &d.joints[j];
+                let used = m.torque[j].abs() / joint.max_torque;
+                margin = margin.min(1.0 - used);
+                let fastest = joint.unloaded_speed - (joint.unloaded_speed - joint.loaded_speed) * used;
+                margin = margin.min((fastest - m.qd[j].abs()) / joint.unloaded_speed);
+            }
+            assert!((i.margin - margin).abs() < 1e-7, "{key} at {} s: {} and {margin}", m.time, i.margin);
+        }
+    }
+}
+
+#[test]
+fn in_an_amble_the_legs_of_a_side_do_together_what_the_virtual_leg_does() {
+    let gait = gait("amble");
+    let legs = Legs::new(gait).unwrap();
+    let mut unequal = 0.0f64;
+    for (m, i) in lifted(gait) {
+        assert!(i.remainder < 1e-12);
+        let (mut torque, mut force) = (vec![0.0; gait.description().joints()], [0.0; 3]);
+        legs.joints.iter().zip(&i.torque).for_each(|(j, gamma)| torque[*j] += gamma);
+        i.reactions.iter().flatten().enumerate().for_each(|(k, f)| force[k % 3] += f);
+        assert!(close(&torque, &m.torque, 1e-8) && close(&force, &m.force, 1e-8), "at {} s", m.time);
+        unequal = unequal.max(i.equal_remainder);
+    }
+    assert!(unequal > 0.1, "equal shares lack {unequal}");
+}
+
+/// The shares of two feet are a line: no point of it may leave more room than the one that was found.
+#[test]
+fn no_other_shares_leave_more_room() {
+    for gait in GAITS.iter().filter(|g| g.description().legs[0].members.len() == 2) {
+        let legs = Legs::new(*gait).unwrap();
+        for (m, i) in lifted(*gait).into_iter().step_by(5) {
+            let equations = Equations::new(legs.whole, &i.posture, legs.description.leg_length());
+            let (demand, columns) = (equations.demand(&i.posture.ud), equations.columns(&i.stance));
+            let inside = i.posture.inside(m.force);
+            let equal = nalgebra::DVector::from_iterator(6, (0..6).map(|k| inside[k % 3] / 2.0));
+            let shares = Shares::new(&columns.rows(0, 6).into_owned(), &demand.rows(0, 6).into_owned(), &equal);
+            assert_eq!(shares.squeezes.ncols(), 1);
+            let pushed = columns.rows(0, 6) * &shares.squeezes;
+            assert!(pushed.amax() < 1e-9, "the feet push against nothing but each other");
+            let rooms = Limits { legs: &legs }.support(&i.stance, &i.posture, &shares, &demand, &columns);
+            let found = best(&rooms, 1).unwrap();
+            assert!((found.margin - i.margin).abs() < 1e-12);
+            let margin = |s: f64| {
+                let s = nalgebra::DVector::from_element(1, s);
+                rooms.iter().map(|r| r.margin(&s)).fold(f64::INFINITY, f64::min)
+            };
+            let most = (-4000..=4000).map(|k| margin(0.1 * f64::from(k))).fold(f64::NEG_INFINITY, f64::max);
+            assert!(
+                most <= found.margin + 1e-7,
+                "{} at {} s: {most} and {}",
+                gait.description().key,
+                m.time,
+                found.margin
+            );
+            assert!(
+                most >= found.margin - 2e-3,
+                "{} at {} s: {most} and {}",
+                gait.description().key,
+                m.time,
+                found.margin
+            );
+            // The multipliers prove it: the limits that they weigh have no more than this margin.
+            let weight: f64 = found.binding.iter().map(|(_, w)| w).sum();
+            assert!((weight - 1.0).abs() < 0.02);
+            for (limit, _) in &found.binding {
+                let room = rooms.iter().filter(|r| r.limit == *limit).map(|r| r.margin(&found.s));
+                assert!(room.fold(f64::INFINITY, f64::min) < found.margin + 1e-6);
+            }
+        }
+    }
+}
+
+/// A biped's feet are aside of its mass centre: in the plane it walks on them, in space it would fall over.
+#[test]
+fn what_no_reactions_balance_is_said() {
+    let gait = gait("rabbit/walk");
+    let (_, motion) = optimum(gait, Criterion::Torque);
+    let receipt = RealLegs::new(gait, &motion).unwrap();
+    assert_eq!(receipt.verdict(), Verdict::NoEquilibrium);
+    assert!(receipt.best_shares.support > 0.01);
+}
+
+#[test]
+fn the_command_writes_what_the_library_lifts() {
+    let gait = gait("amble");
+    let (result, motion) = optimum(gait, Criterion::Torque);
+    let run = |format: &str| {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_piaffe"))
+            .args(["lift", "-", "--rate", "200", "--format", format])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        child.stdin.take().unwrap().write_all(&serde_json::to_vec(&result).unwrap()).unwrap();
+        let out = child.wait_with_output().unwrap();
+        assert!(out.status.success());
+        String::from_utf8(out.stdout).unwrap()
+    };
+    let lift = Lift::at_rate(gait, &motion, 200.0).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&run("json")).unwrap();
+    let text = run("csv");
+    let mut lines = text.lines();
+    let names: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let column = |name: &str| names.iter().position(|n| *n == name).unwrap_or_else(|| panic!("no column {name}"));
+    let rows: Vec<Vec<f64>> = lines.map(|l| l.split(',').map(|x| x.parse().unwrap()).collect()).collect();
+    assert_eq!((rows.len(), json["moments"].as_array().unwrap().len()), (lift.instants.len(), lift.instants.len()));
+    let knee = lift.legs.whole.description().joints[1].name;
+    for (k, (row, i)) in rows.iter().zip(&lift.instants).enumerate() {
+        assert_eq!(row.len(), names.len());
+        assert_eq!(row[column("t")], i.time);
+        assert_eq!(row[column(&format!("torque_{knee}"))], i.torque[1]);
+        assert_eq!(row[column("force_fore_right_y")], i.reactions[1][1]);
+        assert_eq!(json["moments"][k]["force"][1][1], i.reactions[1][1]);
+    }
+    // The impulses of a half step are in its last row, and by themselves.
+    let impulses: Vec<f64> = rows.iter().map(|row| row[column("impulse_fore_left_y")]).collect();
+    assert_eq!(impulses.iter().filter(|i| **i != 0.0).count(), 1);
+    assert_eq!(json["impacts"].as_array().unwrap().len(), 2);
+    let [first, _] = &lift.impacts;
+    assert_eq!(json["impacts"][0]["impulse"][0][1], first.impulses[0][1]);
+}
