@@ -89,7 +89,8 @@ pub struct Joint {
 /// A virtual leg.
 #[derive(Clone, Debug)]
 pub struct Leg {
-    /// The real legs that it stands for. They move alike; of torques and reactions each has an equal share.
+    /// The real legs that it stands for. They move alike; how they share torques and reactions
+    /// is in `four_legs`.
     pub members: Cow<'static, [Member]>,
     pub first_joint: usize,
     pub end_joint: usize,

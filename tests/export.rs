@@ -1,14 +1,17 @@
 //! Exported files in the hands of others: MuJoCo and numpy where a Python has them (`PIAFFE_PYTHON` names it).
 
+#[path = "export/python.rs"]
+mod python;
+
 use piaffe::gaits::GAITS;
 use piaffe::model::{Description, Gait, Rotation};
 use piaffe::motion::{Criterion, Motion};
 use piaffe::result::GaitResult;
 use piaffe::search::multi_start::{Settings, search};
 use piaffe::walk::{Moment, Walk};
+use python::{ask, python};
 use serde_json::{Value, json};
 use std::io::Write;
-use std::path::Path;
 use std::process::{Command, Stdio};
 
 /// An optimum of a gait, as the file that `piaffe optimize` writes.
@@ -85,19 +88,6 @@ fn a_controller_that_follows_the_polynomials_does_the_walk() {
     }
 }
 
-/// A Python with MuJoCo and numpy; one that is named must have them.
-fn python() -> Option<String> {
-    let named = std::env::var("PIAFFE_PYTHON").ok();
-    let candidate = named.clone().unwrap_or("python3".into());
-    let has = Command::new(&candidate).args(["-c", "import mujoco, numpy"]).stderr(Stdio::null()).status();
-    if has.is_ok_and(|s| s.success()) {
-        return Some(candidate);
-    }
-    assert!(named.is_none(), "{candidate} has no mujoco or no numpy");
-    eprintln!("skipped: no Python with mujoco and numpy (PIAFFE_PYTHON names one)");
-    None
-}
-
 /// With z up.
 fn turned([x, y, z]: [f64; 3]) -> [f64; 3] {
     [x, -z, y]
@@ -158,15 +148,6 @@ fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect()
 }
 
-fn ask(python: &str, request: &Value) -> Value {
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/export/oracle.py");
-    let mut child = Command::new(python).arg(script).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
-    child.stdin.take().unwrap().write_all(request.to_string().as_bytes()).unwrap();
-    let out = child.wait_with_output().unwrap();
-    assert!(out.status.success());
-    serde_json::from_slice(&out.stdout).unwrap()
-}
-
 /// The mass matrix of the real robot, its legs coupled as the gait couples them, is A of eq. 5; and the walk's
 /// torques and reactions are what MuJoCo says that its accelerations take.
 #[test]
@@ -183,8 +164,11 @@ fn mujoco_agrees_about_masses_feet_and_inverse_dynamics_of_the_real_robot() {
         });
         let walk = Walk::even(*gait, &motion, 6).unwrap();
         let moments: Vec<Value> = walk.moments.iter().map(|m| state(d, m)).collect();
-        let answer =
-            ask(&python, &json!({ "model": files[0], "arrays": files[1], "urdf": files[2], "moments": moments }));
+        let answer = ask(
+            &python,
+            "export/oracle.py",
+            &json!({ "model": files[0], "arrays": files[1], "urdf": files[2], "moments": moments }),
+        );
 
         let mass = d.total_mass();
         assert!((answer["mass"].as_f64().unwrap() - mass).abs() < 1e-9);

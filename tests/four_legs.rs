@@ -1,5 +1,8 @@
 //! The real legs behind the virtual ones: kinematics, equal shares, and the best shares against all others.
 
+#[path = "export/python.rs"]
+mod python;
+
 use piaffe::four_legs::{Equations, Instant, Legs, Lift, Limits, RealLegs, Shares, Verdict, best};
 use piaffe::gaits::GAITS;
 use piaffe::model::Gait;
@@ -7,6 +10,8 @@ use piaffe::motion::{Criterion, Motion};
 use piaffe::result::GaitResult;
 use piaffe::search::multi_start::{Settings, search};
 use piaffe::walk::{Moment, Walk};
+use python::{ask, python};
+use serde_json::{Value, json};
 use std::io::Write;
 use std::process::{Command, Stdio};
 
@@ -20,6 +25,20 @@ fn optimum(gait: &dyn Gait, criterion: Criterion) -> (GaitResult, Motion) {
 
 fn gait(key: &str) -> &'static dyn Gait {
     *GAITS.iter().find(|g| g.description().key == key).unwrap()
+}
+
+/// What the command says about a result.
+fn piaffe(result: &GaitResult, arguments: &[&str]) -> String {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_piaffe"))
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(&serde_json::to_vec(result).unwrap()).unwrap();
+    let out = child.wait_with_output().unwrap();
+    assert!(out.status.success());
+    String::from_utf8(out.stdout).unwrap()
 }
 
 /// Every moment of a gait's optimum with what is made of it.
@@ -183,20 +202,9 @@ fn what_no_reactions_balance_is_said() {
 fn the_command_writes_what_the_library_lifts() {
     let gait = gait("amble");
     let (result, motion) = optimum(gait, Criterion::Torque);
-    let run = |format: &str| {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_piaffe"))
-            .args(["lift", "-", "--rate", "200", "--format", format])
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .spawn()
-            .unwrap();
-        child.stdin.take().unwrap().write_all(&serde_json::to_vec(&result).unwrap()).unwrap();
-        let out = child.wait_with_output().unwrap();
-        assert!(out.status.success());
-        String::from_utf8(out.stdout).unwrap()
-    };
+    let run = |format: &str| piaffe(&result, &["lift", "-", "--rate", "200", "--format", format]);
     let lift = Lift::at_rate(gait, &motion, 200.0).unwrap();
-    let json: serde_json::Value = serde_json::from_str(&run("json")).unwrap();
+    let json: Value = serde_json::from_str(&run("json")).unwrap();
     let text = run("csv");
     let mut lines = text.lines();
     let names: Vec<&str> = lines.next().unwrap().split(',').collect();
@@ -217,4 +225,36 @@ fn the_command_writes_what_the_library_lifts() {
     assert_eq!(json["impacts"].as_array().unwrap().len(), 2);
     let [first, _] = &lift.impacts;
     assert_eq!(json["impacts"][0]["impulse"][0][1], first.impulses[0][1]);
+}
+
+/// A step of the exported robot, simulated by MuJoCo under the lifted torques and a weak gain, is the lifted step: through
+/// both supports and both impacts. What differs is of the order of the time step and vanishes with it.
+#[test]
+fn mujoco_walks_the_lifted_step() {
+    let Some(python) = python() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    for key in ["trot", "curvet", "amble"] {
+        let (result, _) = optimum(gait(key), Criterion::Torque);
+        let [model, lift] = ["robot.xml", "lift.json"].map(|file| folder.path().join(format!("{key}-{file}")));
+        std::fs::write(&model, piaffe(&result, &["export", "-", "--format", "mjcf"])).unwrap();
+        std::fs::write(&lift, piaffe(&result, &["lift", "-", "--format", "json", "--rate", "2000"])).unwrap();
+        // N·m/rad and N·m·s/rad, of joints that give up to 20 N·m.
+        let request = json!({ "model": model, "lift": lift, "timestep": 1e-4, "kp": 100.0, "kd": 3.0 });
+        let errors = ask(&python, "four_legs/replay.py", &request);
+        let within = |name: &str, most: f64| {
+            let error = errors[name].as_f64().unwrap();
+            assert!(error <= most, "{key}: {name} is off by {error}: {errors}");
+        };
+        let (weight, mass) = (errors["weight"].as_f64().unwrap(), errors["mass"].as_f64().unwrap());
+        println!("{key}: {errors}");
+        within("position", 5e-4);
+        within("turn", 2e-3);
+        within("joint", 2e-3);
+        within("velocity", 5e-3);
+        within("rate", 0.15);
+        within("reaction", 0.03 * weight);
+        within("feedback", 0.5);
+        within("impulse", 2e-3 * mass);
+        within("after", 0.15);
+    }
 }
