@@ -3,6 +3,7 @@
 #![forbid(unsafe_code)]
 
 pub mod altered;
+pub mod audit;
 pub mod certificate;
 pub mod constraints;
 pub mod cost;

@@ -39,14 +39,7 @@ impl<'a> Readback<'a> {
         let (Some(motion), Some(cost)) = (result.motion(), result.cost) else {
             return Err(Unusable::NoOptimum { name, message: result.message });
         };
-        let mut candidates = gaits.iter().filter(|g| g.description().key == result.gait).peekable();
-        if candidates.peek().is_none() {
-            let known = gaits.iter().map(|g| g.description().key).collect::<Vec<_>>().join(", ");
-            return Err(Unusable::UnknownGait { gait: result.gait, known });
-        }
-        let Some(&gait) = candidates.find(|g| g.description().fingerprint() == result.fingerprint) else {
-            return Err(Unusable::OtherRobot { name });
-        };
+        let gait = gait_of(&result, gaits)?;
         let receipt = verify(gait.description(), &motion, result.speed, GRID)
             .map_err(|e| Unusable::Contradiction { name: name.clone(), reason: e.to_string() })?;
         let found = receipt.costs.of(result.criterion);
@@ -56,4 +49,18 @@ impl<'a> Readback<'a> {
         }
         Ok(Readback { result, gait, motion, cost })
     }
+}
+
+/// The gait of this build that a result is of.
+///
+/// # Errors
+/// If there is none of its name, or it is of another robot.
+pub fn gait_of<'a>(result: &GaitResult, gaits: &[&'a dyn Gait]) -> Result<&'a dyn Gait, Unusable> {
+    let mut candidates = gaits.iter().filter(|g| g.description().key == result.gait).peekable();
+    if candidates.peek().is_none() {
+        let known = gaits.iter().map(|g| g.description().key).collect::<Vec<_>>().join(", ");
+        return Err(Unusable::UnknownGait { gait: result.gait.clone(), known });
+    }
+    let same = candidates.find(|g| g.description().fingerprint() == result.fingerprint);
+    same.copied().ok_or_else(|| Unusable::OtherRobot { name: result.name() })
 }

@@ -5,12 +5,12 @@ use crate::cycle::Label;
 use crate::four_legs::RealLegs;
 use crate::model::Gait;
 use crate::motion::{Costs, Criterion, HalfStep, Motion};
-use crate::optimality::Optimality;
+use crate::optimality::{Optimality, optimality};
 use crate::search::local::Local;
 use crate::search::multi_start::Found;
 use crate::sqp;
 use crate::stability::Stability;
-use crate::verify::{Finding, JointPeak, verify};
+use crate::verify::{self, Finding, JointPeak, VerifyError, verify};
 use serde::{Deserialize, Serialize};
 
 /// Largest violation, cycle error and KKT residual with which a result counts as an optimum.
@@ -176,6 +176,24 @@ impl GaitResult {
         result
     }
 
+    /// The result that a motion makes, whoever found it: all that is stated about it derived anew.
+    ///
+    /// # Errors
+    /// If the motion does not have the numbers that the gait needs, or cannot be followed to its end.
+    pub fn of_motion(
+        gait: &dyn Gait,
+        criterion: Criterion,
+        speed: f64,
+        motion: &Motion,
+    ) -> Result<GaitResult, VerifyError> {
+        let receipt = verify(gait.description(), motion, speed, GRID)?;
+        let residual = optimality(gait, criterion, speed, motion).map_or(f64::MAX, |found| found.residual());
+        let mut result = GaitResult::empty(gait, criterion, speed, SearchEntry { starts: 0, seed: 0 });
+        result.accept(motion, receipt, residual);
+        result.examine(gait);
+        Ok(result)
+    }
+
     fn empty(gait: &dyn Gait, criterion: Criterion, speed: f64, search: SearchEntry) -> GaitResult {
         let d = gait.description();
         GaitResult {
@@ -242,15 +260,17 @@ impl GaitResult {
 
     /// Makes `local` the result, with its receipt.
     fn take(&mut self, gait: &dyn Gait, local: &Local) {
-        let receipt = match verify(gait.description(), &local.motion, self.speed, GRID) {
-            Ok(receipt) => receipt,
+        match verify(gait.description(), &local.motion, self.speed, GRID) {
+            Ok(receipt) => self.accept(&local.motion, receipt, local.kkt.stationarity.max(local.kkt.complementarity)),
             Err(error) => {
                 self.status = Status::ReceiptFailed;
                 self.message = format!("the optimizer's motion could not be re-derived: {error}");
-                return;
             }
-        };
-        let kkt_residual = local.kkt.stationarity.max(local.kkt.complementarity);
+        }
+    }
+
+    /// Makes `motion` the result: an optimum if its receipt holds.
+    fn accept(&mut self, motion: &Motion, receipt: verify::Receipt, kkt_residual: f64) {
         let mut reasons = Vec::new();
         let mut must = |what: &str, value: f64, limit: f64| {
             if value.is_nan() || value > limit {
@@ -270,8 +290,8 @@ impl GaitResult {
         self.cost = holds.then(|| receipt.costs.of(self.criterion));
         self.costs = holds.then_some(receipt.costs);
         self.step_length = Some(receipt.step_length);
-        self.durations = local.motion.half_steps.iter().map(|h| h.duration).collect();
-        self.variables = local.motion.half_steps.clone();
+        self.durations = motion.half_steps.iter().map(|h| h.duration).collect();
+        self.variables = motion.half_steps.clone();
         self.peaks = receipt.peaks;
         self.receipt = Some(Receipt {
             max_violation: receipt.max_violation,

@@ -51,6 +51,13 @@ fn the_verifier_shares_nothing_but_the_description_and_the_motion() {
 }
 
 #[test]
+fn the_certificate_knows_the_verifiers_physics_alone() {
+    let certificate = sources("src/certificate");
+    let own = ["crate::certificate", "crate::verify", "crate::model", "crate::motion"];
+    none(lines_with(&certificate, "crate::").filter(|l| !own.iter().any(|o| l.contains(o))), "it imports more");
+}
+
+#[test]
 fn nothing_below_the_command_line_prints() {
     let all = sources("src");
     let below: Vec<_> = all.into_iter().filter(|(p, _)| !p.components().any(|c| c.as_os_str() == "cli")).collect();

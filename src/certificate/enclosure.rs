@@ -114,6 +114,9 @@ impl Solver<'_> {
         let t = share * self.duration.into();
         let (_, state, gradient_state) = &mut self.states;
         let defect = (acceleration - self.model.accelerate(t, [beta, rate], state)?).magnitude();
+        if defect.is_nan() || defect > DEFECT {
+            return None;
+        }
         let variable = |x: Model, k| Gradient::variable(x.cast().widened(TUBE), k);
         let tube = [variable(beta, 0), variable(rate, 1)];
         let slopes = self.gradient.accelerate(Dual::constant(t.cast()), tube, gradient_state)?;
@@ -123,12 +126,9 @@ impl Solver<'_> {
         let [e, ed] = start.map(|x| x.rest());
         // A lower bound: what is taken away is rounded up.
         let room = (1.0 - above(h * b + h * h * a)) * (1.0 - 1e-13);
-        if !(defect <= DEFECT && room >= 0.5) {
-            return None;
-        }
         let v = above((ed + h * (defect + a * e)) / room);
         let u = above(e + h * v);
-        (u <= TUBE && v <= TUBE).then(|| Piece { share, beta: [beta.widened(u), rate.widened(v)] })
+        (room >= 0.5 && u <= TUBE && v <= TUBE).then(|| Piece { share, beta: [beta.widened(u), rate.widened(v)] })
     }
 
     /// A polynomial for β̈ that need not be exact.

@@ -28,6 +28,11 @@ impl<const N: usize> Taylor<N> {
         }
         y.widened(y.norm() * e / (1.0 - e))
     }
+
+    /// Anything from 0 to `most`.
+    fn up_to(most: f64) -> Self {
+        if most.is_finite() { Taylor::from(0.5 * most).widened(0.5 * most) } else { Taylor::UNKNOWN }
+    }
 }
 
 impl<const N: usize> Scalar for Taylor<N> {
@@ -69,17 +74,14 @@ impl<const N: usize> Scalar for Taylor<N> {
             return y.widened((self - y * y).magnitude() / least);
         }
         let most = above(self.bounds()[1].max(0.0)).sqrt();
-        Taylor::from(0.5 * most).widened(0.5 * most)
+        Taylor::up_to(most)
     }
 
     fn abs(self) -> Self {
         match self.bounds() {
             [low, _] if low >= 0.0 => self,
             [_, high] if high <= 0.0 => -self,
-            [low, high] => {
-                let half = 0.5 * high.max(-low);
-                Taylor::from(half).widened(half)
-            }
+            [low, high] => Taylor::up_to(high.max(-low)),
         }
     }
 

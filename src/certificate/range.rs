@@ -54,7 +54,7 @@ impl<const N: usize> Taylor<N> {
         [-0.5, 0.5].map(|middle| {
             // By Horner: multiplied by (middle + τ/2), the sum of the magnitudes of the coefficients does not grow.
             let mut half = Taylor { c: [0.0; N], ..*self };
-            for c in self.terms().iter().rev() {
+            for c in self.coefficients().iter().rev() {
                 for k in (1..=self.degree).rev() {
                     half.c[k] = middle * half.c[k] + 0.5 * half.c[k - 1];
                 }
@@ -68,7 +68,7 @@ impl<const N: usize> Taylor<N> {
 
     /// The ball of values at τ, from −1 to 1.
     pub fn at(&self, tau: f64) -> Ball {
-        let value = self.terms().iter().rev().fold(0.0, |sum, c| sum * tau + c);
+        let value = self.coefficients().iter().rev().fold(0.0, |sum, c| sum * tau + c);
         let rounding = 2.0 * N as f64 * UNIT * self.norm();
         Taylor::from(value).widened(self.rest + rounding)
     }

@@ -13,6 +13,9 @@ use std::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 /// Half the distance of 1 from the next number.
 pub const UNIT: f64 = f64::EPSILON / 2.0;
 
+/// More than underflow can lose, and so much more that products of it are not slowed down by underflow themselves.
+const UNDERFLOW: f64 = 1e-140;
+
 /// A model with N coefficients; see the [module](self).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Taylor<const N: usize> {
@@ -27,7 +30,7 @@ pub type Ball = Taylor<1>;
 
 /// More than the exact value of a sum of up to 100 products of non-negative numbers that was found to be `x`.
 pub(super) fn above(x: f64) -> f64 {
-    x * (1.0 + 1e-13) + f64::MIN_POSITIVE
+    x * (1.0 + 1e-13) + UNDERFLOW
 }
 
 impl<const N: usize> Taylor<N> {
@@ -45,7 +48,7 @@ impl<const N: usize> Taylor<N> {
 
     /// The same functions with fewer or more coefficients.
     pub fn cast<const M: usize>(&self) -> Taylor<M> {
-        let cast = Taylor::polynomial(self.terms());
+        let cast = Taylor::polynomial(self.coefficients());
         if self.rest == 0.0 { cast } else { cast.widened(self.rest) }
     }
 
@@ -64,13 +67,13 @@ impl<const N: usize> Taylor<N> {
     }
 
     /// Coefficients up to the degree.
-    pub(super) fn terms(&self) -> &[f64] {
+    pub fn coefficients(&self) -> &[f64] {
         &self.c[..=self.degree]
     }
 
     /// Σ |cₖ|: the polynomial is nowhere greater.
     pub(super) fn norm(&self) -> f64 {
-        self.terms().iter().map(|c| c.abs()).sum()
+        self.coefficients().iter().map(|c| c.abs()).sum()
     }
 
     /// The same without its rest.
@@ -99,7 +102,7 @@ impl<const N: usize> Taylor<N> {
         sum.degree = (self.degree + 1).min(N - 1);
         let mut start = 0.0;
         let mut beyond = 0.0;
-        for (k, c) in self.terms().iter().enumerate() {
+        for (k, c) in self.coefficients().iter().enumerate() {
             let term = c / (k + 1) as f64;
             start += if k % 2 == 0 { term } else { -term };
             match sum.c.get_mut(k + 1) {
@@ -123,7 +126,7 @@ impl<const N: usize> Taylor<N> {
         }
         let mut sum = self;
         sum.degree = self.degree.max(other.degree);
-        for (c, more) in sum.c.iter_mut().zip(other.terms()) {
+        for (c, more) in sum.c.iter_mut().zip(other.coefficients()) {
             *c += more;
         }
         sum.rest = above(self.rest + other.rest + UNIT * sum.norm());
@@ -137,8 +140,8 @@ impl<const N: usize> Taylor<N> {
         let mut product = Taylor::zero();
         product.degree = (self.degree + other.degree).min(N - 1);
         let mut beyond = 0.0;
-        for (i, a) in self.terms().iter().enumerate() {
-            let (within, cut) = other.terms().split_at((other.degree + 1).min(N - i));
+        for (i, a) in self.coefficients().iter().enumerate() {
+            let (within, cut) = other.coefficients().split_at((other.degree + 1).min(N - i));
             for (c, b) in product.c[i..].iter_mut().zip(within) {
                 *c += a * b;
             }

@@ -16,12 +16,16 @@ pub fn read_text(file: &str) -> anyhow::Result<String> {
 
 /// Reads and parses `file`, or standard input for `-`.
 pub fn read_json<T: DeserializeOwned>(file: &str) -> anyhow::Result<T> {
+    parse_json(file, &read_text(file)?)
+}
+
+/// Parses what was read from `file`, or from standard input for `-`.
+pub fn parse_json<T: DeserializeOwned>(file: &str, text: &str) -> anyhow::Result<T> {
     let name = if file == "-" { "standard input" } else { file };
-    let text = read_text(file)?;
     if text.trim().is_empty() {
         bail!("{name} is empty: JSON was expected");
     }
-    serde_json::from_str(&text).map_err(|e| {
+    serde_json::from_str(text).map_err(|e| {
         let line = text.lines().nth(e.line().saturating_sub(1)).unwrap_or_default();
         let start = e.column().saturating_sub(40);
         let excerpt: String = line.chars().skip(start).take(60).collect();

@@ -14,6 +14,7 @@ mod output;
 mod report;
 mod summary;
 mod sweep;
+mod verify;
 
 use clap::builder::PossibleValuesParser;
 use clap::{CommandFactory, Parser, Subcommand};
@@ -25,6 +26,8 @@ use std::process::ExitCode;
 
 /// Exit code of a run that ended, but without an optimum.
 const NO_OPTIMUM: u8 = 3;
+/// Exit code where not everything that results state was confirmed.
+const NOT_CONFIRMED: u8 = 4;
 
 #[derive(Parser)]
 #[command(
@@ -38,8 +41,10 @@ const NO_OPTIMUM: u8 = 3;
                   piaffe optimize trot --speed 0.6 --json trot.json  one optimum\n  \
                   piaffe report trot.json --out trot                 a page that shows it\n  \
                   piaffe export trot.json --format csv               its numbers over time\n  \
+                  piaffe verify trot.json                            what it states, derived anew\n  \
                   piaffe sweep --speeds 0.2..1.2:0.1 --out sweep     many speeds\n\n\
-                  Exit codes: 0 success, 1 something failed, 2 wrong usage, 3 no optimum (infeasible or not converged).\n\
+                  Exit codes: 0 success, 1 something failed, 2 wrong usage, 3 no optimum (infeasible or not converged),\n\
+                  4 a result was not confirmed.\n\
                   NO_COLOR=1 turns colours off. Files are written whole or not at all, also when the program is interrupted."
 )]
 struct Arguments {
@@ -148,6 +153,21 @@ enum Command {
         #[arg(long, default_value = "-", value_name = "FILE|-")]
         out: String,
     },
+    /// Derive anew what results state, from the specification and the variables of their motions alone.
+    ///
+    /// Says of every entry whether it was confirmed, what it should be instead, or why it could not be checked. How a
+    /// motion was found (other optima, times, the search's settings) cannot be seen from it and is passed over.
+    #[command(
+        after_help = "Examples:\n  piaffe verify results/*.json\n  piaffe verify trot.json --json -\n\nThe exit code is 0 only if everything was confirmed."
+    )]
+    Verify {
+        /// Results as JSON; `-` reads standard input.
+        #[arg(required = true, value_name = "FILE|-")]
+        results: Vec<String>,
+        /// Write all verdicts as JSON; `-` is standard output.
+        #[arg(long, value_name = "FILE|-")]
+        json: Option<String>,
+    },
     /// Show results: one page with the walks, all figures, and the receipts in words.
     ///
     /// The page needs neither network nor other files. Every figure is also written as SVG and PDF.
@@ -214,6 +234,8 @@ pub fn run() -> ExitCode {
     if arguments.quiet {
         output::be_quiet();
     }
+    let unsuccessful =
+        if matches!(arguments.command, Some(Command::Verify { .. })) { NOT_CONFIRMED } else { NO_OPTIMUM };
     let outcome = match arguments.command {
         None => main_job::run(&arguments.out),
         Some(Command::Dynamics { gait, file }) => dynamics::run(by_name(&gait), &file),
@@ -227,6 +249,7 @@ pub fn run() -> ExitCode {
         Some(Command::Manual { out }) => manual::pages(&out),
         Some(Command::Export { result, format, rate, out }) => export::run(&result, format, rate, &out),
         Some(Command::Lift { result, rate, format, out }) => lift::run(&result, format, rate, &out),
+        Some(Command::Verify { results, json }) => verify::run(&results, json.as_deref()),
         Some(Command::Report { results, detail, out }) => report::run(&results, detail, &out),
         Some(Command::Sweep { gait, criterion, speeds, folder, starts, seed }) => {
             let settings = piaffe::search::multi_start::Settings { starts: starts as usize, seed };
@@ -239,7 +262,7 @@ pub fn run() -> ExitCode {
     };
     match outcome {
         Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(NO_OPTIMUM),
+        Ok(false) => ExitCode::from(unsuccessful),
         Err(error) => {
             eprintln!("error: {error:#}");
             ExitCode::FAILURE

@@ -47,7 +47,7 @@ pub enum Constraint {
 
 impl Constraint {
     /// All constraints of a gait with `joints` joints, in the order of their slots.
-    fn all(joints: usize) -> impl Iterator<Item = Constraint> {
+    pub fn all(joints: usize) -> impl Iterator<Item = Constraint> {
         use Constraint::*;
         let of_joints = (0..joints).flat_map(|j| [Torque(j), Speed(j), LowerStop(j), UpperStop(j)]);
         let others = [

@@ -1,0 +1,133 @@
+//! `piaffe verify`: what a result states is derived anew, and what was changed is named.
+
+use serde_json::{Value, json};
+use std::path::PathBuf;
+use std::process::{Command, Output};
+use std::sync::LazyLock;
+
+fn piaffe(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_piaffe")).args(arguments).output().unwrap()
+}
+
+static FOLDER: LazyLock<tempfile::TempDir> = LazyLock::new(|| tempfile::tempdir().unwrap());
+
+fn path(name: &str) -> PathBuf {
+    FOLDER.path().join(name)
+}
+
+fn optimum(gait: &str, criterion: &str) -> Value {
+    let file = path(&format!("{}-{criterion}.json", gait.replace('/', "-")));
+    let name = file.to_str().unwrap();
+    let out = piaffe(&["optimize", gait, "--criterion", criterion, "--speed", "0.6", "--starts", "1", "--json", name]);
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    serde_json::from_slice(&std::fs::read(file).unwrap()).unwrap()
+}
+
+static TROT: LazyLock<Value> = LazyLock::new(|| optimum("trot", "energy"));
+
+/// Exit code and statements of a result, as JSON and in words.
+fn audited(name: &str, result: &Value) -> (i32, Vec<Value>, String) {
+    let file = path(name);
+    std::fs::write(&file, result.to_string()).unwrap();
+    let file = file.to_str().unwrap();
+    let out = piaffe(&["verify", file, "--json", "-"]);
+    let audits: Value = serde_json::from_slice(&out.stdout).unwrap();
+    let words = String::from_utf8(piaffe(&["verify", file]).stdout).unwrap();
+    (out.status.code().unwrap(), audits[0]["statements"].as_array().unwrap().clone(), words)
+}
+
+fn entries(statements: &[Value], verdict: &str) -> Vec<String> {
+    let of = statements.iter().filter(|s| s["verdict"] == verdict);
+    of.map(|s| s["entry"].as_str().unwrap().to_string()).collect()
+}
+
+#[test]
+fn what_the_program_states_is_confirmed() {
+    for (gait, criterion) in [("trot", "energy"), ("amble", "torque"), ("curvet", "energy"), ("rabbit/walk", "torque")]
+    {
+        let result = optimum(gait, criterion);
+        let (code, statements, words) = audited("honest.json", &result);
+        assert!(code == 0 && entries(&statements, "confirmed").len() == statements.len(), "{words}");
+        let confirmed = entries(&statements, "confirmed");
+        for entry in ["status", "cost", "receipt", "certificate", "peaks", "durations", "optimality", "stability"] {
+            assert!(confirmed.iter().any(|c| c == entry), "{entry} is not stated: {confirmed:?}");
+        }
+        assert!(words.lines().next().unwrap().ends_with(", confirmed") && !words.contains("not "), "{words}");
+    }
+}
+
+#[test]
+fn what_was_changed_is_named() {
+    let changed = |pointer: &str, value: Value| {
+        let mut result = TROT.clone();
+        *result.pointer_mut(pointer).unwrap() = value;
+        let (code, statements, words) = audited(&format!("{}.json", pointer.replace('/', "_")), &result);
+        assert_eq!(code, 4, "{words}");
+        (statements, words)
+    };
+    let number = |pointer: &str| TROT.pointer(pointer).unwrap().as_f64().unwrap();
+    // A claim: it alone is refuted, with what it should be.
+    for (pointer, value) in [
+        ("/cost", json!(number("/cost") * (1.0 - 1e-6))),
+        ("/costs/torque", json!(1.0)),
+        ("/step_length", json!(0.5)),
+        ("/receipt/max_violation", json!(0.0)),
+        ("/receipt/kkt_residual", json!(1e-3)),
+        ("/receipt/findings/0/constraint", json!("friction")),
+        ("/receipt/findings", json!([])),
+        ("/certificate/standing", json!("sampled")),
+        ("/certificate/bounds/0/margin", json!(0.9)),
+        ("/certificate/half_steps/0/width", json!([0.0, 0.0])),
+        ("/peaks/1/torque", json!(0.1)),
+        ("/polynomial_order", json!(8)),
+        ("/status", json!("receipt-failed")),
+    ] {
+        let (statements, words) = changed(pointer, value.clone());
+        let entry = pointer.split('/').nth(1).unwrap();
+        assert_eq!(entries(&statements, "not-confirmed"), [entry], "{pointer}: {words}");
+        let refuted = statements.iter().find(|s| s["entry"] == entry).unwrap();
+        let difference = &refuted["differences"][0];
+        let place = difference["place"].as_str().unwrap();
+        assert!(place.starts_with(entry) && words.contains(place), "{words}");
+        assert_ne!(difference["stated"], difference["found"]);
+    }
+    // The motion: whatever follows from it is refuted.
+    for (pointer, by) in [("/variables/0/q_final/0", 1e-6), ("/variables/0/duration", 1e-7), ("/speed", 1e-4)] {
+        let (statements, words) = changed(pointer, json!(number(pointer) + by));
+        let refuted = entries(&statements, "not-confirmed");
+        assert!(refuted.iter().any(|r| r == "receipt") && refuted.iter().any(|r| r == "certificate"), "{words}");
+    }
+    let (statements, words) = changed("/variables/0/q_interior", json!([[0.1]]));
+    assert!(entries(&statements, "confirmed").is_empty() && words.contains("has 1 numbers"), "{words}");
+    // Another question: the motion is no optimum for it.
+    let (statements, words) = changed("/criterion", json!("torque"));
+    assert!(entries(&statements, "not-confirmed").iter().any(|r| r == "status"), "{words}");
+}
+
+#[test]
+fn what_cannot_be_checked_is_said_to_be_so() {
+    for (pointer, value, why) in [
+        ("/fingerprint", json!("0123456789abcdef"), "fingerprint"),
+        ("/gait", json!("canter"), "there is no gait `canter`"),
+    ] {
+        let mut result = TROT.clone();
+        *result.pointer_mut(pointer).unwrap() = value;
+        let (code, statements, words) = audited("foreign.json", &result);
+        assert!(code == 4 && words.contains(why), "{words}");
+        assert_eq!(entries(&statements, "not-checked").len(), statements.len());
+    }
+    // A statement that this version knows nothing of, beside others that hold.
+    let mut result = TROT.clone();
+    result["grace"] = json!({ "of the hind legs": 0.9 });
+    let (code, statements, _) = audited("grace.json", &result);
+    assert!(code == 4 && entries(&statements, "not-checked") == ["grace"]);
+    assert!(entries(&statements, "not-confirmed").is_empty());
+
+    let file = path("fast.json");
+    let fast = ["optimize", "trot", "--speed", "5", "--starts", "1", "--json", file.to_str().unwrap()];
+    assert_eq!(piaffe(&fast).status.code(), Some(3));
+    let infeasible: Value = serde_json::from_slice(&std::fs::read(file).unwrap()).unwrap();
+    let (code, statements, words) = audited("infeasible.json", &infeasible);
+    assert!(code == 4 && words.contains("no motion"), "{words}");
+    assert_eq!(entries(&statements, "not-checked").len(), statements.len());
+}
