@@ -3,7 +3,7 @@
 use super::{input, output};
 use anyhow::Context;
 use clap::ValueEnum;
-use piaffe::four_legs::{Lift, csv, json};
+use piaffe::four_legs::{Lift, RealLegs, Verdict, csv, json};
 use piaffe::gaits::GAITS;
 use piaffe::readback::Readback;
 use std::io::Write;
@@ -21,6 +21,10 @@ pub enum Format {
 pub fn run(file: &str, format: Format, rate: f64, out: &str) -> anyhow::Result<bool> {
     let Readback { gait, motion, .. } = Readback::new(input::read_json(file)?, GAITS)?;
     let lift = Lift::at_rate(gait, &motion, rate)?;
+    let legs = RealLegs::of(&lift);
+    if matches!(legs.verdict(), Verdict::BeyondLimits | Verdict::NoEquilibrium) && !output::is_quiet() {
+        eprintln!("note: {}; see the columns `margin` and `remainder`", legs.sentence());
+    }
     match format {
         Format::Json => output::json_to(out, &json(&lift))?,
         Format::Csv if out == "-" => {

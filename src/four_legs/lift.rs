@@ -73,7 +73,7 @@ pub struct Lift<'a> {
     /// In order of time.
     pub instants: Vec<Instant>,
     /// At the end of each half step.
-    pub impacts: [Impact; 2],
+    pub impacts: Vec<Impact>,
     /// s.
     pub durations: [f64; 2],
     /// Forward travel in the step, m.
@@ -107,12 +107,10 @@ impl<'a> Lift<'a> {
         let no_whole = || NotLifted::NoWhole { gait: gait.description().key.into() };
         let legs = Legs::new(gait).ok_or_else(no_whole)?;
         let instants = moments.iter().map(|m| legs.support(m)).collect::<Result<_, _>>()?;
-        let impact = |half: usize| {
-            // Both ends of a half step are among the moments.
-            let last = moments.iter().rfind(|m| m.half_step == half);
-            last.ok_or(NotLifted::Unsolved { time: 0.0 }).and_then(|m| legs.impact(gait, m))
-        };
-        let impacts = [impact(0)?, impact(1)?];
+        // The last moment of each half step.
+        let ends = |k: usize| moments.get(k + 1).is_none_or(|next| next.half_step != moments[k].half_step);
+        let impact = |k: usize| legs.impact(gait, &moments[k]);
+        let impacts = (0..moments.len()).filter(|k| ends(*k)).map(impact).collect::<Result<_, _>>()?;
         Ok(Lift { legs, instants, impacts, durations: walk.half_steps.map(|h| h.duration), travel: walk.travel })
     }
 }

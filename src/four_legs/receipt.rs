@@ -86,7 +86,11 @@ impl RealLegs {
     /// # Errors
     /// If there is no model of the whole robot or no such motion.
     pub fn new(gait: &dyn Gait, motion: &Motion) -> Result<RealLegs, NotLifted> {
-        let lift = Lift::even(gait, motion, INTERVALS)?;
+        Ok(RealLegs::of(&Lift::even(gait, motion, INTERVALS)?))
+    }
+
+    /// Looks at the instants of a lifted motion.
+    pub fn of(lift: &Lift) -> RealLegs {
         let limits = Limits { legs: &lift.legs };
         let worst = |all: &mut dyn Iterator<Item = (f64, usize, f64, &[(Limit, f64)])>| {
             let found = all.min_by(|a, b| a.0.total_cmp(&b.0));
@@ -103,7 +107,7 @@ impl RealLegs {
             let vertical = |leg: &usize| i.reactions[*leg][1];
             most(&mut i.stance.iter().map(vertical)) / i.stance.iter().map(vertical).sum::<f64>()
         });
-        Ok(RealLegs {
+        RealLegs {
             equal_shares: Remainder {
                 support: most(&mut instants.iter().map(|i| i.equal_remainder)),
                 impact: most(&mut impacts.iter().map(|i| i.equal_remainder)),
@@ -114,10 +118,10 @@ impl RealLegs {
             },
             support: worst(supports),
             impact: worst(landings),
-            impossible: impossible(&lift),
+            impossible: impossible(lift),
             largest_load: most(loads),
             instants: instants.len(),
-        })
+        }
     }
 
     pub fn verdict(&self) -> Verdict {

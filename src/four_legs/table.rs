@@ -31,6 +31,8 @@ struct Row {
     force: Vec<Point>,
     /// Least margin of the limits on the legs in support.
     margin: f64,
+    /// What the equations of motion lack, in the robot's weight: nothing but rounding, if reactions meet them at all.
+    remainder: f64,
 }
 
 fn rows<'l>(lift: &'l Lift<'_>) -> impl Iterator<Item = Row> + 'l {
@@ -52,6 +54,7 @@ fn rows<'l>(lift: &'l Lift<'_>) -> impl Iterator<Item = Row> + 'l {
             torque: i.torque.clone(),
             force: i.reactions.clone(),
             margin: i.margin,
+            remainder: i.remainder,
         }
     })
 }
@@ -78,20 +81,16 @@ pub fn csv(lift: &Lift) -> String {
     for of in ["force", "impulse"] {
         header.extend(legs.iter().flat_map(|leg| AXES.map(|axis| format!("{of}_{leg}_{axis}"))));
     }
-    header.push("margin".into());
+    header.extend(["margin", "remainder"].map(String::from));
     let mut text = header.join(",");
     text.push('\n');
-    let count = lift.instants.len();
-    for (k, row) in rows(lift).enumerate() {
-        let ends = k + 1 == count || lift.instants[k + 1].half_step != lift.instants[k].half_step;
-        let impulse = match ends {
-            true => lift.impacts[row.half_step - 1].impulses.concat(),
-            false => vec![0.0; 3 * legs.len()],
-        };
+    for (row, instant) in rows(lift).zip(&lift.instants) {
+        let impact = lift.impacts.iter().find(|i| (i.half_step, i.time) == (instant.half_step, instant.time));
+        let impulse = impact.map_or(vec![0.0; 3 * legs.len()], |i| i.impulses.concat());
         let platform = [&[row.t, row.half_step as f64][..], &row.position, &row.velocity, &row.acceleration].concat();
         let turn = [&row.quaternion[..], &row.omega, &row.omegad].concat();
         let joints = [row.q, row.qd, row.qdd, row.torque].concat();
-        let all = [platform, turn, joints, row.force.concat(), impulse, vec![row.margin]].concat();
+        let all = [platform, turn, joints, row.force.concat(), impulse, vec![row.margin, row.remainder]].concat();
         text += &all.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
         text.push('\n');
     }
