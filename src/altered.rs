@@ -1,7 +1,7 @@
 //! A gait with some numbers changed that its dynamics do not contain: limits, ranges, the polynomials' order.
 
 use crate::model::whole::Whole;
-use crate::model::{Description, Gait};
+use crate::model::{Description, Gait, Lever};
 
 /// The generated dynamics of a gait under another description.
 pub struct Altered<'a> {
@@ -42,6 +42,11 @@ macro_rules! delegate {
 impl Gait for Altered<'_> {
     fn description(&self) -> &Description {
         &self.description
+    }
+
+    /// Of other limits than the specification's none is known.
+    fn levers(&self) -> &'static [Lever] {
+        if self.description.numbers() == self.gait.description().numbers() { self.gait.levers() } else { &[] }
     }
 
     fn latex(&self) -> &'static str {

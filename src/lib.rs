@@ -22,6 +22,7 @@ pub mod readback;
 pub mod report;
 pub mod result;
 pub mod search;
+pub mod sensitivity;
 pub mod sqp;
 pub mod stability;
 pub mod stance;

@@ -6,8 +6,10 @@
 //! frames and units: X = [p, q], world axes Xf forward, Yf up, Zf to the right; SI.
 
 pub mod family;
+mod numbers;
 pub mod whole;
 
+pub use numbers::Lever;
 use std::borrow::Cow;
 
 /// What a gait is made of, in numbers.
@@ -180,6 +182,13 @@ impl Description {
         if k < self.unactuated { k } else { k + 1 }
     }
 
+    /// All of q from its prescribed coordinates and β; of the rates likewise.
+    pub fn complete<T: Copy>(&self, prescribed: &[T], beta: T) -> Vec<T> {
+        let mut all = prescribed.to_vec();
+        all.insert(self.unactuated.min(all.len()), beta);
+        all
+    }
+
     pub fn total_mass(&self) -> f64 {
         self.bodies.iter().map(|b| b.mass).sum()
     }
@@ -236,6 +245,10 @@ pub(crate) fn hash(text: &str) -> u64 {
 #[allow(clippy::too_many_arguments)]
 pub trait Gait: Sync {
     fn description(&self) -> &Description;
+    /// The numbers of the specification on which the gait depends; of families none, since they have parameters.
+    fn levers(&self) -> &'static [Lever] {
+        &[]
+    }
     /// The closed forms of eq. 2–5, 8 and 9 with the names of the robot's parameters: a LaTeX document.
     fn latex(&self) -> &'static str;
     /// The real robot that the virtual legs stand for. Members of families have none: it is generated with numbers.

@@ -37,7 +37,7 @@ fn row(links: usize) -> String {
         kernels.iter().map(|k| (k.name.as_str(), Program::new(&model.ring, k).operations().flops)).collect();
     let factor = start.elapsed().as_secs_f64() - derive;
     let start = Instant::now();
-    let source = gait_source(&mechanism, "chain", "whole", "", None, "growth").expect("generated code parses");
+    let source = gait_source(&mechanism, &[], "chain", "whole", "", None, "growth").expect("generated code parses");
     let all = start.elapsed().as_secs_f64();
     let files = RobotFiles { module: "chain".into(), robot, gaits: vec![gait] };
     let files = generate(&[files], None).expect("the chain is generated");

@@ -1,7 +1,7 @@
 //! The cargo façade: the one place that reads the environment, writes files and prints.
 
 use crate::emit;
-use crate::mechanism::{Family, Mechanism, Whole, select};
+use crate::mechanism::{Family, Mechanism, Whole, levers, select};
 use crate::spec::{self, Diagnostic, Gait, Robot};
 use crate::typeset::latex;
 use sha2::{Digest, Sha256};
@@ -162,7 +162,15 @@ pub fn generate(robots: &[RobotFiles], runtime: Option<&str>) -> Result<Vec<Gene
         let (module, mechanism) = (&robot.files.module, Mechanism::new(&locked(&robot.spec, &gait.locked)?, gait));
         let latex = latex(&robot.spec, gait, &mechanism);
         let whole = robot.wholes().iter().position(|angles| **angles == gait.locked).unwrap_or_default();
-        let source = emit::gait_source(&mechanism, module, &emit::whole_module(whole), &latex, runtime, origin)?;
+        let source = emit::gait_source(
+            &mechanism,
+            &levers(&robot.spec, gait),
+            module,
+            &emit::whole_module(whole),
+            &latex,
+            runtime,
+            origin,
+        )?;
         Ok((emit::file_name(module, &gait.name), source))
     })?;
     for robot in &parsed {

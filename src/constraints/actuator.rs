@@ -5,19 +5,22 @@
 use super::PathConstraint;
 use crate::instant::Quantities;
 use crate::model::Description;
+use crate::verify::numbers::Numbers;
+use crate::verify::scalar::Scalar;
 
-pub fn constraints(description: &Description, y: &Quantities) -> Vec<PathConstraint> {
+pub fn constraints<T: Scalar>(d: &Description, limits: &Numbers<T>, y: &Quantities) -> Vec<PathConstraint<T>> {
     let mut list = Vec::new();
-    for (j, joint) in description.joints.iter().enumerate() {
+    for (j, (joint, limits)) in d.joints.iter().zip(&limits.joints).enumerate() {
         for sign in [1.0, -1.0] {
             let name = format!("torque of {}", joint.name);
-            list.push(PathConstraint::linear(name, joint.max_torque, joint.max_torque, vec![(y.torque(j), -sign)]));
+            let terms = vec![(y.torque(j), T::from(-sign))];
+            list.push(PathConstraint::linear(name, joint.max_torque, limits.max_torque, terms));
         }
-        let slope = (joint.unloaded_speed - joint.loaded_speed) / joint.max_torque;
+        let slope = (limits.unloaded_speed - limits.loaded_speed) / limits.max_torque;
         for (speed, torque) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
             let name = format!("torque–speed of {}", joint.name);
-            let terms = vec![(y.rate(j), -speed), (y.torque(j), -torque * slope)];
-            list.push(PathConstraint::linear(name, joint.unloaded_speed, joint.unloaded_speed, terms));
+            let terms = vec![(y.rate(j), T::from(-speed)), (y.torque(j), T::from(-torque) * slope)];
+            list.push(PathConstraint::linear(name, joint.unloaded_speed, limits.unloaded_speed, terms));
         }
     }
     list

@@ -6,9 +6,10 @@
 use super::PathConstraint;
 use crate::instant::Quantities;
 use crate::model::Description;
+use crate::verify::numbers::Numbers;
+use crate::verify::scalar::Scalar;
 
-pub fn constraint(description: &Description, y: &Quantities) -> PathConstraint {
-    let terms = vec![(y.height(), 1.0)];
-    let least = description.limits.min_platform_height;
-    PathConstraint::linear("platform height".into(), description.leg_length(), -least, terms)
+pub fn constraint<T: Scalar>(d: &Description, limits: &Numbers<T>, y: &Quantities) -> PathConstraint<T> {
+    let terms = vec![(y.height(), T::from(1.0))];
+    PathConstraint::linear("platform height".into(), d.leg_length(), -limits.min_platform_height, terms)
 }

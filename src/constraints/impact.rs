@@ -3,21 +3,23 @@
 //! Impulse upward; tangential impulse at most μ times it; vertical velocity of the leaving foot ≥ 0.
 
 use crate::model::Description;
+use crate::verify::scalar::Scalar;
 
 /// Formulas on the results of a touchdown kernel.
 #[derive(Clone, Debug)]
-pub struct ImpactConstraints {
-    friction: f64,
+pub struct ImpactConstraints<T = f64> {
+    friction: T,
     lateral: bool,
     /// Unit of an impulse: total mass times 1 m/s.
     unit: f64,
     components: usize,
 }
 
-impl ImpactConstraints {
-    pub fn new(description: &Description) -> ImpactConstraints {
+impl<T: Scalar> ImpactConstraints<T> {
+    /// With this coefficient of friction.
+    pub fn with(description: &Description, friction: T) -> ImpactConstraints<T> {
         ImpactConstraints {
-            friction: description.limits.friction,
+            friction,
             lateral: description.lateral,
             unit: description.total_mass(),
             components: description.positions(),
@@ -38,15 +40,21 @@ impl ImpactConstraints {
     }
 
     /// Scaled value `i` from (impulse…, leaving velocity).
-    pub fn value(&self, i: usize, y: &[f64]) -> f64 {
-        let mu = self.friction;
+    pub fn value(&self, i: usize, y: &[T]) -> T {
+        let (mu, unit) = (self.friction, T::from(self.unit));
         match (i, self.lateral) {
-            (0, _) => y[1] / self.unit,
-            (1, true) => (mu * y[1] - norm(y)) / self.unit,
-            (1, false) => (mu * y[1] + y[0]) / self.unit,
-            (2, false) => (mu * y[1] - y[0]) / self.unit,
+            (0, _) => y[1] / unit,
+            (1, true) => (mu * y[1] - norm(y)) / unit,
+            (1, false) => (mu * y[1] + y[0]) / unit,
+            (2, false) => (mu * y[1] - y[0]) / unit,
             _ => y[self.components],
         }
+    }
+}
+
+impl ImpactConstraints {
+    pub fn new(description: &Description) -> ImpactConstraints {
+        ImpactConstraints::with(description, description.limits.friction)
     }
 
     /// Calls `add(index in (impulse…, leaving), partial derivative)` for value `i`.
@@ -87,6 +95,6 @@ impl ImpactConstraints {
 const TINY: f64 = 1e-12;
 
 /// Norm of the tangential part of an impulse in space.
-fn norm(y: &[f64]) -> f64 {
+fn norm<T: Scalar>(y: &[T]) -> T {
     (y[0] * y[0] + y[2] * y[2]).sqrt()
 }

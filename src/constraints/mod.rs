@@ -15,13 +15,15 @@ pub use impact::ImpactConstraints;
 
 use crate::instant::Quantities;
 use crate::model::Description;
+use crate::verify::numbers::Numbers;
+use crate::verify::scalar::Scalar;
 
 /// A constraint on the quantities of an instant: `value ≥ 0`.
 #[derive(Clone, Debug)]
-pub struct PathConstraint {
+pub struct PathConstraint<T = f64> {
     /// In words, as reports show it.
     pub name: String,
-    pub form: Form,
+    pub form: Form<T>,
     /// Unit in which the value is measured.
     pub unit: f64,
     /// Whether it also is imposed at the first instant (a joint's range there is that of the last).
@@ -30,39 +32,46 @@ pub struct PathConstraint {
 
 /// The formula of a path constraint.
 #[derive(Clone, Debug)]
-pub enum Form {
+pub enum Form<T = f64> {
     /// `offset + Σ coefficient · quantity`.
-    Linear { offset: f64, terms: Vec<(usize, f64)> },
+    Linear { offset: T, terms: Vec<(usize, T)> },
     /// `factor · normal − ‖tangential‖`.
-    Cone { normal: usize, factor: f64, tangential: Vec<usize> },
+    Cone { normal: usize, factor: T, tangential: Vec<usize> },
 }
 
 /// All path constraints of a gait.
 pub fn path_constraints(description: &Description) -> Vec<PathConstraint> {
+    path_constraints_of(description, &Numbers::new(description))
+}
+
+/// The same with limits that are numbers of any kind; units are the description's.
+pub fn path_constraints_of<T: Scalar>(description: &Description, limits: &Numbers<T>) -> Vec<PathConstraint<T>> {
     let y = Quantities::new(description);
-    let mut list = actuator::constraints(description, &y);
-    list.extend(reaction::constraints(description, &y));
-    list.push(swing::constraint(description, &y));
-    list.push(ground::constraint(description, &y));
-    list.extend(range::constraints(description, &y));
+    let mut list = actuator::constraints(description, limits, &y);
+    list.extend(reaction::constraints(description, limits, &y));
+    list.push(swing::constraint(description, limits, &y));
+    list.push(ground::constraint(description, limits, &y));
+    list.extend(range::constraints(description, limits, &y));
     list
 }
 
-impl PathConstraint {
-    fn linear(name: String, unit: f64, offset: f64, terms: Vec<(usize, f64)>) -> PathConstraint {
+impl<T: Scalar> PathConstraint<T> {
+    fn linear(name: String, unit: f64, offset: T, terms: Vec<(usize, T)>) -> PathConstraint<T> {
         PathConstraint { name, form: Form::Linear { offset, terms }, unit, at_start: true }
     }
 
     /// Scaled value for the quantities of an instant.
     #[inline]
-    pub fn value(&self, y: &[f64]) -> f64 {
+    pub fn value(&self, y: &[T]) -> T {
         let value = match &self.form {
-            Form::Linear { offset, terms } => offset + terms.iter().map(|(q, c)| c * y[*q]).sum::<f64>(),
-            Form::Cone { normal, factor, tangential } => factor * y[*normal] - norm(y, tangential),
+            Form::Linear { offset, terms } => *offset + terms.iter().fold(T::zero(), |sum, (q, c)| sum + *c * y[*q]),
+            Form::Cone { normal, factor, tangential } => *factor * y[*normal] - norm(y, tangential),
         };
-        value / self.unit
+        value / T::from(self.unit)
     }
+}
 
+impl PathConstraint {
     /// Calls `add(quantity, partial derivative)` for each quantity that the value depends on.
     #[inline]
     pub fn partials(&self, y: &[f64], mut add: impl FnMut(usize, f64)) {
@@ -94,6 +103,6 @@ impl PathConstraint {
 /// Below this a tangential force (N) has no direction.
 const TINY: f64 = 1e-9;
 
-fn norm(y: &[f64], quantities: &[usize]) -> f64 {
-    quantities.iter().map(|q| y[*q] * y[*q]).sum::<f64>().sqrt()
+fn norm<T: Scalar>(y: &[T], quantities: &[usize]) -> T {
+    quantities.iter().fold(T::zero(), |sum, q| sum + y[*q] * y[*q]).sqrt()
 }

@@ -3,14 +3,16 @@
 use super::PathConstraint;
 use crate::instant::Quantities;
 use crate::model::Description;
+use crate::verify::numbers::Numbers;
+use crate::verify::scalar::Scalar;
 
-pub fn constraints(description: &Description, y: &Quantities) -> Vec<PathConstraint> {
+pub fn constraints<T: Scalar>(d: &Description, limits: &Numbers<T>, y: &Quantities) -> Vec<PathConstraint<T>> {
     let mut list = Vec::new();
-    for (j, joint) in description.joints.iter().enumerate() {
-        let [lower, upper] = joint.range;
+    for (j, (joint, limits)) in d.joints.iter().zip(&limits.joints).enumerate() {
+        let [lower, upper] = limits.range;
         let stop = |which: &str| format!("range of {} ({which} stop)", joint.name);
-        list.push(PathConstraint::linear(stop("lower"), 1.0, -lower, vec![(y.angle(j), 1.0)]));
-        list.push(PathConstraint::linear(stop("upper"), 1.0, upper, vec![(y.angle(j), -1.0)]));
+        list.push(PathConstraint::linear(stop("lower"), 1.0, -lower, vec![(y.angle(j), T::from(1.0))]));
+        list.push(PathConstraint::linear(stop("upper"), 1.0, upper, vec![(y.angle(j), T::from(-1.0))]));
     }
     for constraint in &mut list {
         constraint.at_start = false;

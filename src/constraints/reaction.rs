@@ -3,23 +3,24 @@
 use super::{Form, PathConstraint};
 use crate::instant::Quantities;
 use crate::model::Description;
+use crate::verify::numbers::Numbers;
+use crate::verify::scalar::Scalar;
 
-pub fn constraints(description: &Description, y: &Quantities) -> Vec<PathConstraint> {
-    let weight = description.total_mass() * description.gravity;
-    let limits = &description.limits;
+pub fn constraints<T: Scalar>(d: &Description, limits: &Numbers<T>, y: &Quantities) -> Vec<PathConstraint<T>> {
+    let weight = d.total_mass() * d.gravity;
     let mut list = vec![PathConstraint::linear(
         "vertical force".into(),
         weight,
         -limits.min_vertical_force,
-        vec![(y.force(1), 1.0)],
+        vec![(y.force(1), T::from(1.0))],
     )];
-    if description.lateral {
+    if d.lateral {
         let form = Form::Cone { normal: y.force(1), factor: limits.friction, tangential: vec![y.force(0), y.force(2)] };
         list.push(PathConstraint { name: "friction".into(), form, unit: weight, at_start: true });
     } else {
         for sign in [1.0, -1.0] {
-            let terms = vec![(y.force(1), limits.friction), (y.force(0), sign)];
-            list.push(PathConstraint::linear("friction".into(), weight, 0.0, terms));
+            let terms = vec![(y.force(1), limits.friction), (y.force(0), T::from(sign))];
+            list.push(PathConstraint::linear("friction".into(), weight, T::zero(), terms));
         }
     }
     list

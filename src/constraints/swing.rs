@@ -6,13 +6,10 @@
 use super::PathConstraint;
 use crate::instant::Quantities;
 use crate::model::Description;
+use crate::verify::numbers::Numbers;
+use crate::verify::scalar::Scalar;
 
-pub fn constraint(description: &Description, y: &Quantities) -> PathConstraint {
-    let terms = vec![(y.clearance(), 1.0)];
-    PathConstraint::linear(
-        "swing clearance".into(),
-        description.leg_length(),
-        -description.limits.swing_clearance,
-        terms,
-    )
+pub fn constraint<T: Scalar>(d: &Description, limits: &Numbers<T>, y: &Quantities) -> PathConstraint<T> {
+    let terms = vec![(y.clearance(), T::from(1.0))];
+    PathConstraint::linear("swing clearance".into(), d.leg_length(), -limits.swing_clearance, terms)
 }

@@ -23,6 +23,7 @@ use crate::stance::Undefined;
 use dip::Dip;
 use hessian::Workspace;
 use phase::Phase;
+pub use problem::{CLOSURE, Place};
 pub use sample::Sample;
 
 /// Elements per half step, of 4 intervals each: more where the polynomials of eq. 15 may bend more often.
@@ -277,6 +278,19 @@ impl<'a> Cycle<'a> {
             self.travel += phase.travel;
         }
         Ok(())
+    }
+
+    /// Partial derivatives of the criterion's integral over a half step in the quantities of its nodes: node, quantity,
+    /// derivative.
+    pub fn work_partials(&self, phase: usize) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+        let p = &self.phases[phase];
+        let t = p.duration();
+        p.cost.partials.iter().map(move |(node, quantity, partial)| (*node, *quantity, t * partial))
+    }
+
+    /// Forward travel in all half steps of the last simulated motion, m.
+    pub fn travel(&self) -> f64 {
+        self.travel
     }
 
     /// Integral of the criterion's integrand over the whole motion.

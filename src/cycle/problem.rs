@@ -26,6 +26,15 @@ enum Row {
     Impact { phase: usize, constraint: usize },
 }
 
+/// Where an inequality row is imposed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Place {
+    /// A path constraint at a share of a half step.
+    Instant { phase: usize, share: f64, constraint: usize },
+    /// A constraint on the impact that ends a half step.
+    Impact { phase: usize, constraint: usize },
+}
+
 impl Cycle<'_> {
     /// Path constraints that are imposed at a node.
     fn path_at(&self, node: usize) -> impl Iterator<Item = &PathConstraint> {
@@ -96,21 +105,31 @@ impl Cycle<'_> {
         Row::Impact { phase: rest / self.impact.count(), constraint: rest % self.impact.count() }
     }
 
-    /// Which constraint inequality row `i` is, in words.
-    pub fn label(&self, i: usize) -> Label {
+    /// Where inequality row `i` is imposed.
+    pub fn place(&self, i: usize) -> Place {
         match self.locate(i) {
             Row::Path { phase, node, constraint } => {
-                let p = &self.phases[phase];
-                let time = p.mesh.nodes[node].0 * p.duration();
-                Label { name: self.path[constraint].name.clone(), half_step: phase + 1, time }
+                Place::Instant { phase, share: self.phases[phase].mesh.nodes[node].0, constraint }
             }
             Row::Dip { phase, index } => {
                 let p = &self.phases[phase];
                 let dip = &p.dips[index];
-                let time = (dip.element as f64 + dip.lowest.at) / p.mesh.elements as f64 * p.duration();
-                Label { name: self.path[dip.constraint].name.clone(), half_step: phase + 1, time }
+                let share = (dip.element as f64 + dip.lowest.at) / p.mesh.elements as f64;
+                Place::Instant { phase, share, constraint: dip.constraint }
             }
-            Row::Impact { phase, constraint } => Label {
+            Row::Impact { phase, constraint } => Place::Impact { phase, constraint },
+        }
+    }
+
+    /// Which constraint inequality row `i` is, in words.
+    pub fn label(&self, i: usize) -> Label {
+        match self.place(i) {
+            Place::Instant { phase, share, constraint } => Label {
+                name: self.path[constraint].name.clone(),
+                half_step: phase + 1,
+                time: share * self.phases[phase].duration(),
+            },
+            Place::Impact { phase, constraint } => Label {
                 name: self.impact.name(constraint).into(),
                 half_step: phase + 1,
                 time: self.phases[phase].duration(),

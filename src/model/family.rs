@@ -159,29 +159,14 @@ pub fn fit<const P: usize, const N: usize>(
         }
     }
     let mut description = specified.clone();
-    description.replace_numbers(&numbers(&values));
+    let mut measured = numbers(&values).into_iter();
+    description.for_each_measured(&mut |number| *number = measured.next().unwrap_or(f64::NAN));
     description.check_inertias()?;
     description.check_mirror()?;
     Ok((description, values))
 }
 
 impl Description {
-    /// In the order of [`fit`].
-    fn replace_numbers(&mut self, numbers: &[f64]) {
-        let mut numbers = numbers.iter().copied();
-        let mut replace = |place: &mut f64| *place = numbers.next().unwrap_or(f64::NAN);
-        replace(&mut self.gravity);
-        self.bodies.to_mut().iter_mut().for_each(|body| body.replace_numbers(&mut replace));
-        self.joints.to_mut().iter_mut().for_each(|joint| replace(&mut joint.rotor_inertia));
-        for leg in &mut self.legs {
-            leg.foot.iter_mut().for_each(&mut replace);
-            for member in leg.members.to_mut() {
-                member.bodies.to_mut().iter_mut().for_each(|body| body.replace_numbers(&mut replace));
-                member.foot.iter_mut().for_each(&mut replace);
-            }
-        }
-    }
-
     fn check_inertias(&self) -> Result<(), Unfit> {
         for body in self.bodies.iter() {
             // ∫ r rᵀ dm has no negative eigenvalue; some slack, since that of a flat plate is zero.
@@ -212,14 +197,6 @@ impl Description {
             }
         }
         Ok(())
-    }
-}
-
-impl Body {
-    fn replace_numbers(&mut self, replace: &mut impl FnMut(&mut f64)) {
-        self.offset.iter_mut().for_each(&mut *replace);
-        replace(&mut self.mass);
-        self.com.iter_mut().chain(self.inertia.as_flattened_mut()).for_each(replace);
     }
 }
 

@@ -165,12 +165,7 @@ impl Start {
     fn new(gait: &dyn Gait, h: &HalfStep, leg: usize) -> Start {
         let d = gait.description();
         let nq = d.orientations();
-        let whole = |prescribed: &[f64], beta: f64| {
-            let mut all = prescribed.to_vec();
-            all.insert(d.unactuated, beta);
-            all
-        };
-        let (q, qd) = (whole(&h.q_initial, h.beta_initial), whole(&h.qd_initial, h.betad_initial));
+        let (q, qd) = (d.complete(&h.q_initial, h.beta_initial), d.complete(&h.qd_initial, h.betad_initial));
         let mut momentum = vec![0.0; 1 + 2 * nq];
         gait.momentum(leg, &q, &qd, &mut momentum);
         let mut terms = [0.0; 5];

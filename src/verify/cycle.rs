@@ -30,16 +30,16 @@ pub fn transition<T: Scalar>(
 ) -> Result<Vec<T>, VerifyError> {
     let before = &half_steps[index];
     let after = &half_steps[(index + 1) % half_steps.len()];
-    let q = complete(description, &before.q_final, before.beta_final);
-    let qd = complete(description, &before.qd_final, before.betad_final);
+    let q = description.complete(&before.q_final, before.beta_final);
+    let qd = description.complete(&before.qd_final, before.betad_final);
     let landing = 1 - stance_leg(description, index);
     let mut multibody = Multibody::with(description, numbers);
     let impact = impact_of(&mut multibody, landing, &q, &qd).ok_or(VerifyError::Impact { half_step: index + 1 })?;
     Units::new(description).impact(multibody.numbers(), &impact.impulse, &impact.leaving, note);
 
     let rates = &impact.after[description.positions()..];
-    let found = complete(description, &after.q_initial, after.beta_initial);
-    let found_rates = complete(description, &after.qd_initial, after.betad_initial);
+    let found = description.complete(&after.q_initial, after.beta_initial);
+    let found_rates = description.complete(&after.qd_initial, after.betad_initial);
     let gaps = (0..q.len()).flat_map(|k| {
         let (from, sign) = match description.half_steps {
             HalfSteps::Mirrored => description.swapped(k),
@@ -58,11 +58,4 @@ pub fn closure<T: Scalar>(half_step: &HalfStep<T>, end: [T; 2]) -> [T; 2] {
 /// Difference of two rates, relative where they are large.
 fn relative<T: Scalar>(found: T, expected: T) -> T {
     (found - expected) / T::from(expected.least_magnitude().max(1.0))
-}
-
-/// q from Q and β.
-fn complete<T: Scalar>(description: &Description, prescribed: &[T], beta: T) -> Vec<T> {
-    let mut q = prescribed.to_vec();
-    q.insert(description.unactuated.min(q.len()), beta);
-    q
 }

@@ -3,7 +3,7 @@
 
 use super::multibody::Vec3;
 use super::scalar::Scalar;
-use crate::model::Description;
+use crate::model::{Body, Description, Member};
 
 /// Masses, lengths and limits of a [`Description`], in its units and order.
 #[derive(Clone, Debug)]
@@ -16,6 +16,7 @@ pub struct Numbers<T = f64> {
     pub friction: T,
     pub min_vertical_force: T,
     pub swing_clearance: T,
+    pub half_step_duration: [T; 2],
     pub min_platform_height: T,
 }
 
@@ -42,29 +43,52 @@ pub struct Actuator<T> {
 impl<T: Scalar> Numbers<T> {
     /// As they are.
     pub fn new(description: &Description) -> Self {
-        let vector = |v: [f64; 3]| Vec3::from(v.map(T::from));
-        let bodies = description.bodies.iter().map(|b| Rigid {
-            offset: vector(b.offset),
-            mass: b.mass.into(),
-            com: vector(b.com),
-            inertia: b.inertia.map(vector),
+        Numbers::of(description, description.numbers().into_iter().map(T::from))
+    }
+
+    /// Others in the order of [`Description::numbers`].
+    pub fn of(description: &Description, numbers: impl IntoIterator<Item = T>) -> Self {
+        let mut rest = numbers.into_iter();
+        let mut one = || rest.next().unwrap_or(T::from(f64::NAN));
+        let gravity = one();
+        let bodies = description.bodies.iter().map(|_| rigid(&mut one)).collect();
+        let rotors: Vec<T> = description.joints.iter().map(|_| one()).collect();
+        let feet = [0, 1].map(|leg| {
+            let foot = vector(&mut one);
+            // The numbers of its members are for others.
+            let of_member = |member: &Member| Body::MEASURED * member.bodies.len() + 3;
+            (0..description.legs[leg].members.iter().map(of_member).sum()).for_each(|_| {
+                one();
+            });
+            foot
         });
-        let joints = description.joints.iter().map(|j| Actuator {
-            range: j.range.map(T::from),
-            max_torque: j.max_torque.into(),
-            unloaded_speed: j.unloaded_speed.into(),
-            loaded_speed: j.loaded_speed.into(),
-            rotor_inertia: j.rotor_inertia.into(),
+        let joints = rotors.into_iter().map(|rotor_inertia| Actuator {
+            range: [one(), one()],
+            max_torque: one(),
+            unloaded_speed: one(),
+            loaded_speed: one(),
+            rotor_inertia,
         });
+        let joints = joints.collect();
         Numbers {
-            gravity: description.gravity.into(),
-            bodies: bodies.collect(),
-            feet: [0, 1].map(|leg| vector(description.legs[leg].foot)),
-            joints: joints.collect(),
-            friction: description.limits.friction.into(),
-            min_vertical_force: description.limits.min_vertical_force.into(),
-            swing_clearance: description.limits.swing_clearance.into(),
-            min_platform_height: description.limits.min_platform_height.into(),
+            gravity,
+            bodies,
+            feet,
+            joints,
+            friction: one(),
+            min_vertical_force: one(),
+            swing_clearance: one(),
+            half_step_duration: [one(), one()],
+            min_platform_height: one(),
         }
     }
+}
+
+fn rigid<T: Scalar>(one: &mut impl FnMut() -> T) -> Rigid<T> {
+    let (offset, mass, com) = (vector(one), one(), vector(one));
+    Rigid { offset, mass, com, inertia: [(); 3].map(|()| vector(one)) }
+}
+
+fn vector<T: Scalar>(one: &mut impl FnMut() -> T) -> Vec3<T> {
+    Vec3::from([(); 3].map(|()| one()))
 }

@@ -1,12 +1,12 @@
 //! One generated module per gait.
 
-use super::description::description;
+use super::description::{description, float};
 use super::function::{Function, base_name, ident};
 use super::modules::key;
 use super::type_name;
 use crate::dynamics::{Input, Kernel, LUMPS, PARAMETERS, Shape, kernels};
-use crate::mechanism::Mechanism;
-use proc_macro2::TokenStream;
+use crate::mechanism::{Lever, Mechanism};
+use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,6 +17,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// If what was generated is not Rust: a defect of the generator.
 pub fn gait_source(
     mechanism: &Mechanism,
+    levers: &[Lever],
     robot: &str,
     whole: &str,
     latex: &str,
@@ -27,7 +28,9 @@ pub fn gait_source(
     let functions: Vec<Function> = kernels.iter().map(|k| Function::new(&model.ring, k)).collect();
     let items = items(&functions);
     let gait = match runtime {
-        Some(runtime) => implementation(mechanism, &key(robot, &mechanism.gait), whole, &functions, latex, runtime)?,
+        Some(runtime) => {
+            implementation(mechanism, levers, &key(robot, &mechanism.gait), whole, &functions, latex, runtime)?
+        }
         None => TokenStream::new(),
     };
     let file = quote! {
@@ -65,6 +68,7 @@ pub(super) fn written(file: TokenStream, origin: &str) -> Result<String, String>
 /// The gait's type with its description and its `impl Gait`.
 fn implementation(
     m: &Mechanism,
+    levers: &[Lever],
     key: &str,
     whole: &str,
     functions: &[Function],
@@ -72,6 +76,7 @@ fn implementation(
     runtime: &str,
 ) -> Result<TokenStream, String> {
     let runtime = path(runtime)?;
+    let levers = levers.iter().map(|l| lever(l, &runtime));
     let name = ident(&type_name(&m.gait));
     let doc = format!(" The {} of `{}`.", m.gait, m.robot);
     let description = description(m, key, functions, &runtime);
@@ -86,10 +91,22 @@ fn implementation(
         impl #runtime::Gait for #name {
             fn description(&self) -> &#runtime::Description { &DESCRIPTION }
             fn latex(&self) -> &'static str { #latex }
+            fn levers(&self) -> &'static [#runtime::Lever] { &[#(#levers),*] }
             fn whole(&self) -> Option<&'static dyn #runtime::whole::Whole> { Some(&super::#whole::Whole) }
             #methods
         }
     })
+}
+
+/// A number of the specification as a value of the runtime's type.
+fn lever(lever: &Lever, runtime: &TokenStream) -> TokenStream {
+    let Lever { name, unit, value, slopes } = lever;
+    let value = float(*value);
+    let slopes = slopes.iter().map(|(number, slope)| {
+        let (number, slope) = (Literal::usize_unsuffixed(*number), float(*slope));
+        quote!((#number, #slope))
+    });
+    quote!(#runtime::Lever { name: #name, unit: #unit, value: #value, slopes: &[#(#slopes),*] })
 }
 
 /// Trait methods: per kernel one that takes slices and writes all outputs one after another.

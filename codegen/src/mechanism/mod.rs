@@ -4,10 +4,12 @@
 //! whose hip is the mean of their mounts and whose masses and inertias are their sums ([`Robot::virtual_leg`]).
 
 mod family;
+mod lever;
 mod parameter;
 mod whole;
 
 pub use family::Family;
+pub use lever::{Lever, levers};
 pub use parameter::{Parameter, Sign, parameters, select, with};
 pub use whole::{Whole, WholeJoint, WholeLeg};
 

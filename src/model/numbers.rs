@@ -1,0 +1,68 @@
+//! The numbers of a description in one fixed order, and how they follow from those of the specification.
+
+use super::{Body, Description};
+
+/// A number of the specification: something that can be changed on the robot, or in what is asked of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Lever {
+    /// Where it stands in the specification, such as `links.thigh.mass`.
+    pub name: &'static str,
+    pub unit: &'static str,
+    pub value: f64,
+    /// Which of [`Description::numbers`] change with it, and by how much per unit.
+    pub slopes: &'static [(usize, f64)],
+}
+
+impl Description {
+    /// All numbers: first what is measured (gravity; of each body offset, mass, mass centre and inertia; of each joint the
+    /// rotor's inertia; of each leg the foot, and of its members their bodies and feet), then what limits (of each joint
+    /// its range, greatest torque, unloaded and loaded speed; friction, vertical force, clearance, shortest and longest
+    /// half step, platform height).
+    pub fn numbers(&self) -> Vec<f64> {
+        let mut numbers = Vec::new();
+        self.clone().for_each_number(&mut |number| numbers.push(*number));
+        numbers
+    }
+
+    /// Visits all numbers in their order.
+    pub fn for_each_number(&mut self, visit: &mut impl FnMut(&mut f64)) {
+        self.for_each_measured(visit);
+        for joint in self.joints.to_mut() {
+            joint.range.iter_mut().for_each(&mut *visit);
+            visit(&mut joint.max_torque);
+            visit(&mut joint.unloaded_speed);
+            visit(&mut joint.loaded_speed);
+        }
+        let l = &mut self.limits;
+        visit(&mut l.friction);
+        visit(&mut l.min_vertical_force);
+        visit(&mut l.swing_clearance);
+        l.half_step_duration.iter_mut().for_each(&mut *visit);
+        visit(&mut l.min_platform_height);
+    }
+
+    /// Visits the measured numbers in their order.
+    pub(super) fn for_each_measured(&mut self, visit: &mut impl FnMut(&mut f64)) {
+        visit(&mut self.gravity);
+        self.bodies.to_mut().iter_mut().for_each(|body| body.for_each_measured(visit));
+        self.joints.to_mut().iter_mut().for_each(|joint| visit(&mut joint.rotor_inertia));
+        for leg in &mut self.legs {
+            leg.foot.iter_mut().for_each(&mut *visit);
+            for member in leg.members.to_mut() {
+                member.bodies.to_mut().iter_mut().for_each(|body| body.for_each_measured(visit));
+                member.foot.iter_mut().for_each(&mut *visit);
+            }
+        }
+    }
+}
+
+impl Body {
+    /// How many numbers are measured of a body.
+    pub const MEASURED: usize = 3 + 1 + 3 + 9;
+
+    fn for_each_measured(&mut self, visit: &mut impl FnMut(&mut f64)) {
+        self.offset.iter_mut().for_each(&mut *visit);
+        visit(&mut self.mass);
+        self.com.iter_mut().chain(self.inertia.as_flattened_mut()).for_each(visit);
+    }
+}

@@ -1,0 +1,93 @@
+//! Sensitivity of the optimum: what to change on the robot, or in what is asked of it, to lower the criterion.
+//!
+//! At an optimum the slope of the least criterion C* in a parameter p is that of the Lagrangian, with the variables Θ and the
+//! multipliers as they are (envelope theorem): dC*/dp = ∂L/∂p. The multipliers are [`optimality`](crate::optimality)'s;
+//! ∂L/∂p comes from the verifier's physics in dual numbers, with β integrated anew ([`lagrangian`]).
+
+mod lagrangian;
+
+use crate::cycle::Place;
+use crate::model::Gait;
+use crate::motion::{Criterion, Motion};
+use crate::optimality::Linearized;
+use lagrangian::{LANES, Slopes};
+use serde::{Deserialize, Serialize};
+
+/// A constraint nearer to zero than this (scaled) is active.
+const ACTIVE: f64 = 1e-6;
+/// A price below this share of the criterion is none.
+const FREE: f64 = 1e-6;
+
+/// Slopes of the least criterion.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sensitivities {
+    /// In the numbers of the specification and the speed, the largest elasticity first.
+    pub slopes: Vec<Sensitivity>,
+    /// Constraints that are active without a price: the optimum may change its active set right here, and then slopes hold to
+    /// one side only.
+    pub one_sided: Vec<String>,
+}
+
+/// The slope of the least criterion in a number.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sensitivity {
+    /// Its name in the specification, or `speed`.
+    pub parameter: String,
+    pub unit: String,
+    pub value: f64,
+    /// dC*/dp, the criterion's unit per the parameter's.
+    pub slope: f64,
+    /// Percent of the criterion per percent of the parameter.
+    pub elasticity: f64,
+}
+
+/// The sensitivities of a motion that minimizes `criterion` at `speed` (m/s). `None` without levers
+/// ([`Gait::levers`]) or if the motion cannot be followed.
+///
+/// # Panics
+/// If the motion has not the numbers that the gait needs; `verify` tells.
+pub fn sensitivities(gait: &dyn Gait, criterion: Criterion, speed: f64, motion: &Motion) -> Option<Sensitivities> {
+    let levers = gait.levers();
+    if levers.is_empty() {
+        return None;
+    }
+    let linearized = Linearized::new(gait, criterion, speed, motion).ok()?;
+    let slopes = Slopes::new(&linearized, motion);
+    let cost = linearized.multipliers.values.objective;
+    let entry = |parameter: &str, unit: &str, value: f64, slope: f64| Sensitivity {
+        parameter: parameter.into(),
+        unit: unit.into(),
+        value,
+        slope,
+        elasticity: slope * value / cost,
+    };
+    let mut list = vec![entry("speed", "m/s", speed, slopes.in_speed())];
+    for chunk in levers.chunks(LANES) {
+        let found = slopes.along(chunk)?;
+        list.extend(chunk.iter().zip(found).map(|(l, slope)| entry(l.name, l.unit, l.value, slope)));
+    }
+    list.sort_by(|a, b| b.elasticity.abs().total_cmp(&a.elasticity.abs()));
+    Some(Sensitivities { slopes: list, one_sided: one_sided(&linearized) })
+}
+
+/// Active constraints of which no row nearby has a price.
+fn one_sided(linearized: &Linearized) -> Vec<String> {
+    let (cycle, m) = (&linearized.cycle, &linearized.multipliers);
+    let least = FREE * m.values.objective.abs();
+    let kind = |i: usize| match cycle.place(i) {
+        Place::Instant { phase, constraint, .. } => (phase, constraint, false),
+        Place::Impact { phase, constraint } => (phase, constraint, true),
+    };
+    let priced: Vec<_> = (0..m.inequalities.len()).filter(|i| m.inequalities[*i] > least).map(kind).collect();
+    let mut names = Vec::new();
+    for i in (0..m.inequalities.len()).filter(|i| m.values.inequalities[*i] < ACTIVE) {
+        if !priced.contains(&kind(i)) {
+            let label = cycle.label(i);
+            let name = format!("{} (half step {})", label.name, label.half_step);
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+    }
+    names
+}

@@ -1,0 +1,70 @@
+//! Slopes of the optimum in limits and speed against optima of changed problems. Those in masses and lengths need robots
+//! with other dynamics: see family/tests.
+
+use piaffe::altered::Altered;
+use piaffe::gaits::GAITS;
+use piaffe::model::{Gait, Lever};
+use piaffe::motion::Criterion;
+use piaffe::search::local::{Local, Task};
+use piaffe::search::multi_start::{Settings, search};
+use piaffe::sensitivity::{Sensitivities, sensitivities};
+use piaffe::sqp::Control;
+
+const SPEED: f64 = 0.6;
+
+fn optimum(gait: &dyn Gait, criterion: Criterion) -> Local {
+    search(gait, criterion, SPEED, &Settings { starts: 2, seed: 1 }, &|_| {}).optima[0].local.clone()
+}
+
+/// The least criterion at the changed problem, near a known optimum.
+fn cost(gait: &dyn Gait, criterion: Criterion, speed: f64, near: &Local) -> f64 {
+    let local = Task { gait, criterion, speed }.follow(&near.theta, &mut |_| Control::Continue);
+    assert!(local.status.is_optimal(), "{:?}", local.status);
+    local.costs.of(criterion)
+}
+
+fn slope(found: &Sensitivities, name: &str) -> f64 {
+    found.slopes.iter().find(|s| s.parameter == name).unwrap_or_else(|| panic!("no {name}")).slope
+}
+
+/// A gait with the numbers that depend on a lever moved by as much as the lever moves by `by`.
+fn moved<'a>(gait: &'a dyn Gait, lever: &Lever, by: f64) -> Option<Altered<'a>> {
+    let mut change = vec![0.0; gait.description().numbers().len()];
+    lever.slopes.iter().for_each(|(number, slope)| change[*number] = slope * by);
+    let mut change = change.into_iter();
+    Altered::new(gait, |d| d.for_each_number(&mut |number| *number += change.next().unwrap()))
+}
+
+#[test]
+fn slopes_in_limits_and_speed_are_those_of_optima_of_changed_problems() {
+    let mut compared = 0;
+    for (gait, criterion) in GAITS.iter().flat_map(|g| Criterion::ALL.map(|c| (*g, c))) {
+        let local = optimum(gait, criterion);
+        let found = sensitivities(gait, criterion, SPEED, &local.motion).unwrap();
+        let name = format!("{} {criterion:?}", gait.description().key);
+        let best = local.costs.of(criterion);
+        let check = |of: &str, slope: f64, differences: f64, value: f64| {
+            let (slope, differences) = (slope * value / best, differences * value / best);
+            println!("{name} {of}: {slope} {differences}");
+            assert!((slope - differences).abs() < 1e-4 * (1.0 + slope.abs()), "{name} {of}: {slope} {differences}");
+        };
+        let h = 1e-4 * SPEED;
+        let differences =
+            (cost(gait, criterion, SPEED + h, &local) - cost(gait, criterion, SPEED - h, &local)) / (2.0 * h);
+        check("speed", slope(&found, "speed"), differences, SPEED);
+        for lever in gait.levers() {
+            let exact = slope(&found, lever.name);
+            let h = 1e-4 * lever.value.abs();
+            let (Some(more), Some(less)) = (moved(gait, lever, h), moved(gait, lever, -h)) else { continue };
+            if exact == 0.0 || h == 0.0 {
+                continue;
+            }
+            let differences =
+                (cost(&more, criterion, SPEED, &local) - cost(&less, criterion, SPEED, &local)) / (2.0 * h);
+            check(lever.name, exact, differences, lever.value);
+            compared += 1;
+        }
+        println!("{:?}", found.one_sided);
+    }
+    assert!(compared > 20, "{compared}");
+}
