@@ -5,6 +5,7 @@ use crate::four_legs::RealLegs;
 use crate::model::Gait;
 use crate::optimality::optimality;
 use crate::result::GaitResult;
+use crate::sensitivity::sensitivities;
 use crate::stability::stability;
 
 impl GaitResult {
@@ -17,5 +18,6 @@ impl GaitResult {
         self.stability = stability(gait, &motion).ok();
         self.optimality = optimality(gait, self.criterion, self.speed, &motion).ok();
         self.real_legs = RealLegs::new(gait, &motion).ok();
+        self.sensitivities = sensitivities(gait, self.criterion, self.speed, &motion);
     }
 }

@@ -8,6 +8,7 @@ use crate::motion::{Costs, Criterion, HalfStep, Motion};
 use crate::optimality::{Optimality, optimality};
 use crate::search::local::Local;
 use crate::search::multi_start::Found;
+use crate::sensitivity::Sensitivities;
 use crate::sqp;
 use crate::stability::Stability;
 use crate::verify::{self, Finding, JointPeak, VerifyError, verify};
@@ -65,6 +66,9 @@ pub struct GaitResult {
     /// The first-order conditions, derived from the motion alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub optimality: Option<Optimality>,
+    /// What to change to lower the criterion.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sensitivities: Option<Sensitivities>,
     /// What becomes of a push.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stability: Option<Stability>,
@@ -212,6 +216,7 @@ impl GaitResult {
             receipt: None,
             certificate: None,
             optimality: None,
+            sensitivities: None,
             stability: None,
             peaks: Vec::new(),
             real_legs: None,

@@ -4,6 +4,7 @@ use piaffe::certificate::Certificate;
 use piaffe::model::Description;
 use piaffe::motion::Criterion;
 use piaffe::result::{GaitResult, Status};
+use piaffe::sensitivity::Sensitivity;
 use std::io::Write;
 
 /// Motor speeds are read in rev/min.
@@ -108,6 +109,14 @@ pub fn print(description: &Description, r: &GaitResult) -> std::io::Result<()> {
             holders => format!("by {}", holders[..holders.len().min(3)].join(", ")),
         };
         writeln!(out, "  optimality      residual {:.1e} from the motion alone; held {held}", optimality.residual())?;
+    }
+    if let Some(sensitivities) = &r.sensitivities {
+        let advice = |s: &Sensitivity| {
+            let sign = if s.elasticity > 0.0 { "−" } else { "+" };
+            format!("{} {sign}1 % saves {:.2} %", s.parameter, s.elasticity.abs())
+        };
+        let advice: Vec<String> = sensitivities.of_robot().take(3).map(advice).collect();
+        writeln!(out, "  to change       {}", advice.join("; "))?;
     }
     if let Some(stability) = &r.stability {
         writeln!(out, "  joints by clock {}", stability.clock)?;

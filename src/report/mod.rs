@@ -11,6 +11,7 @@ mod font;
 mod footfall;
 mod ink;
 mod joints;
+mod levers;
 mod page;
 mod pdf;
 mod player;

@@ -4,7 +4,7 @@ use super::figure::Figure;
 use super::font::Weight;
 use super::subject::{Subject, spaced};
 use super::words::meaning;
-use super::{Report, certificate, ink, player, price, real_legs, recovery, svg};
+use super::{Report, certificate, ink, levers, player, price, real_legs, recovery, svg};
 use crate::motion::Criterion;
 use crate::result::{GaitResult, Status};
 use base64::Engine;
@@ -210,6 +210,7 @@ fn section(s: &Subject, figures: &[Figure]) -> Markup {
             (gallery(&name, &figures[1..]))
             (receipt(r))
             (price::section(r))
+            (levers::section(r))
             (recovery::section(r))
             (script(&name, json!({ "walk": player::data(s), "figures": interactive(figures) })))
         }

@@ -28,6 +28,14 @@ pub struct Sensitivities {
     pub one_sided: Vec<String>,
 }
 
+impl Sensitivities {
+    /// Those in what the robot is made of: links, joints, actuators, mounts; the largest elasticity first.
+    pub fn of_robot(&self) -> impl Iterator<Item = &Sensitivity> {
+        let asked = |name: &str| name == "speed" || name == "gravity" || name.starts_with("limits.");
+        self.slopes.iter().filter(move |s| !asked(&s.parameter) && s.elasticity != 0.0)
+    }
+}
+
 /// The slope of the least criterion in a number.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sensitivity {

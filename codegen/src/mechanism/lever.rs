@@ -5,8 +5,8 @@
 //! and links that a locked joint joins have a common mass centre. So slopes are taken at the specification's values,
 //! by differences that leave rounding only.
 
-use super::Mechanism;
 use super::parameter::{parameters, with};
+use super::{Actuated, Mechanism};
 use crate::spec::{Gait, Limits, Robot};
 
 /// A number of the specification.
@@ -16,11 +16,11 @@ pub struct Lever {
     pub name: String,
     pub unit: &'static str,
     pub value: f64,
-    /// Which of the mechanism's numbers depend on it ([`Mechanism::numbers`], then [`limits`]), and how much.
+    /// Which of the mechanism's numbers depend on it ([`Mechanism::numbers`], then [`Mechanism::limiting_numbers`]), and how much.
     pub slopes: Vec<(usize, f64)>,
 }
 
-/// Steps of the differences, as shares of the value.
+/// Step of the differences, as a share of the value.
 const STEP: f64 = 1.0 / 1024.0;
 
 /// All numbers that a gait depends on. Both must have passed validation.
@@ -32,7 +32,7 @@ pub fn levers(robot: &Robot, gait: &Gait) -> Vec<Lever> {
         places.for_each(|(_, _, number)| *number = value);
         let robot = robot.locked(&gait.locked).ok()?;
         let mechanism = Mechanism::new(&robot, &gait);
-        Some([mechanism.numbers(), limits(&mechanism)].concat())
+        Some([mechanism.numbers(), mechanism.limiting_numbers()].concat())
     };
     let physical = parameters(robot).into_iter().map(|p| (p.name, p.unit, p.value));
     let mut named: Vec<(String, &'static str, f64)> = physical.collect();
@@ -61,14 +61,15 @@ fn rounded(slope: f64) -> f64 {
     if f64::abs(rounded) < 1e-12 { 0.0 } else { rounded }
 }
 
-/// The numbers that only limit: of each joint its range, greatest torque and speed limits; then the gait's.
-pub fn limits(m: &Mechanism) -> Vec<f64> {
-    let of_joints =
-        m.joints.iter().flat_map(|j| [j.range[0], j.range[1], j.max_torque, j.unloaded_speed, j.loaded_speed]);
-    let l = &m.limits;
-    let [shortest, longest] = l.half_step_duration;
-    let of_gait = [l.friction, l.min_vertical_force, l.swing_clearance, shortest, longest, l.min_platform_height];
-    of_joints.chain(of_gait).collect()
+impl Mechanism {
+    /// Numbers that only limit: of each joint its range, greatest torque and speed limits; then the gait's limits.
+    pub fn limiting_numbers(&self) -> Vec<f64> {
+        let of_joint = |j: &Actuated| [j.range[0], j.range[1], j.max_torque, j.unloaded_speed, j.loaded_speed];
+        let l = &self.limits;
+        let [shortest, longest] = l.half_step_duration;
+        let of_gait = [l.friction, l.min_vertical_force, l.swing_clearance, shortest, longest, l.min_platform_height];
+        self.joints.iter().flat_map(of_joint).chain(of_gait).collect()
+    }
 }
 
 /// Where the specification has limits: name, unit, number.
