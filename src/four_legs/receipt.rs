@@ -95,7 +95,8 @@ impl RealLegs {
         let worst = |all: &mut dyn Iterator<Item = (f64, usize, f64, &[(Limit, f64)])>| {
             let found = all.min_by(|a, b| a.0.total_cmp(&b.0));
             let (margin, half_step, time, binding) = found.unwrap_or((f64::NAN, 0, 0.0, &[]));
-            let binding = binding.iter().map(|(l, weight)| Binding { limit: limits.name(*l), weight: *weight });
+            let binding =
+                binding.iter().map(|(l, weight)| Binding { limit: limits.name(*l), weight: rounded(*weight) });
             Worst { margin, half_step: half_step + 1, time, binding: binding.collect() }
         };
         let (instants, impacts) = (&lift.instants, &lift.impacts);
@@ -135,6 +136,11 @@ impl RealLegs {
             Verdict::UnequalShares
         }
     }
+}
+
+/// To a millionth: what the solver's tolerance makes certain.
+fn rounded(weight: f64) -> f64 {
+    (1e6 * weight).round() / 1e6
 }
 
 /// The part of the step whose instants leave no room, by trapezoids.

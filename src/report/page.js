@@ -179,7 +179,7 @@ class Robot {
     const w = span > 0 ? clamp((time - before[0]) / span, 0, 1) : 1;
     const mix = (a, b) => a.map((v, i) => v + w * (b[i] - v));
     const platform = mix(before[2], after[2]);
-    const force = mix(before[3], after[3]);
+    const forces = mix(before[3], after[3]);
     const stance = before[1];
     const triples = flat => flat.reduce((list, v, i) => (i % 3 ? list[list.length - 1].push(v) : list.push([v]), list), []);
     const hips = [[platform[0] + shift, platform[1], platform[2]]];
@@ -194,7 +194,7 @@ class Robot {
         part.joints[n].setAttribute("cx", x.toFixed(1));
         part.joints[n].setAttribute("cy", y.toFixed(1));
       });
-      part.arrow.setAttribute("d", leg.leg === stance ? this.arrow(points[points.length - 1], force, camera) : "");
+      part.arrow.setAttribute("d", leg.leg === stance ? this.arrow(points[points.length - 1], forces.slice(3 * i, 3 * i + 3), camera) : "");
       const swing = frames.filter(f => f[1] !== leg.leg).map(f => {
         const foot = f[4][i].slice(-3);
         return [foot[0] + shift, foot[1], foot[2]];

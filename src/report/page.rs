@@ -203,7 +203,7 @@ fn section(s: &Subject, figures: &[Figure]) -> Markup {
                         } }
                     }
                     @for f in &figures[..1] { (drawing(&name, f)) }
-                    p.note { "All real legs, to scale. Arrows are the reactions, in equal shares on each foot, dots the paths of the swinging feet. Drag to turn." }
+                    p.note { "All real legs, to scale. Arrows are the reactions on each foot, dots the paths of the swinging feet. Drag to turn." }
                 }
                 (facts(s))
             }
