@@ -22,13 +22,13 @@ pub fn section(c: &Certificate) -> Markup {
                     _ => {}
                 } }
         }
-        details { summary { "Proven bounds" } table {
+        details { summary { "Proven bounds" } div.scroll { table {
             thead { tr { th { "limit" } th.n { "half step" } th.n { "the margin is never below" } } }
             tbody { @for bound in &c.bounds { tr {
                 td { (bound.constraint) } td.n { (bound.half_step) }
                 td.n { @if let Some(margin) = bound.margin { (scientific(margin)) } @else { "–" } }
             } } }
-        } }
+        } } }
     }
 }
 
