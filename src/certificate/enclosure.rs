@@ -66,14 +66,7 @@ pub struct Lost {
 /// # Errors
 /// If no piece, however small, has a proof.
 pub fn enclose(description: &Description, half_step: &HalfStep, leg: usize) -> Result<Vec<Piece>, Lost> {
-    let mut solver = Solver {
-        plain: Instants::new(description, Numbers::new(description), half_step, leg),
-        model: Instants::new(description, Numbers::new(description), &half_step.cast(), leg),
-        gradient: Instants::new(description, Numbers::new(description), &half_step.cast(), leg),
-        states: (State::new(description), State::new(description), State::new(description)),
-        duration: half_step.duration,
-        nodes: std::array::from_fn(|k| -libm::cos(std::f64::consts::PI * (k as f64 + 0.5) / ACCELERATION as f64)),
-    };
+    let mut solver = Solver::new(description, half_step, leg);
     let mut start = [half_step.beta_initial, half_step.betad_initial].map(Ball::from);
     let mut pieces = Vec::new();
     // Shares of a power of two are exact: (how many of them lie before, power).
@@ -102,12 +95,29 @@ struct Solver<'a> {
     nodes: [f64; ACCELERATION],
 }
 
-impl Solver<'_> {
-    /// The piece from `start`, with its proof; `half` is half its length in half steps.
+impl<'a> Solver<'a> {
+    fn new(description: &'a Description, half_step: &HalfStep, leg: usize) -> Self {
+        let node = |k| -libm::cos(std::f64::consts::PI * (k as f64 + 0.5) / ACCELERATION as f64);
+        Solver {
+            plain: Instants::new(description, Numbers::new(description), half_step, leg),
+            model: Instants::new(description, Numbers::new(description), &half_step.cast(), leg),
+            gradient: Instants::new(description, Numbers::new(description), &half_step.cast(), leg),
+            states: (State::new(description), State::new(description), State::new(description)),
+            duration: half_step.duration,
+            nodes: std::array::from_fn(node),
+        }
+    }
+
+    /// The piece from `start`, with its proof; `half` is half its length in half steps, a power of two.
     fn piece(&mut self, share: Model, half: f64, start: [Ball; 2]) -> Option<Piece> {
         // Exact, since `half` is a power of two.
         let half_time = half * self.duration;
         let acceleration = self.picard(share, half_time, start.map(Ball::value))?;
+        self.proven(acceleration, share, half_time, start)
+    }
+
+    /// What a polynomial for β̈ certainly is close to.
+    fn proven(&mut self, acceleration: Model, share: Model, half_time: f64, start: [Ball; 2]) -> Option<Piece> {
         let rate = Model::from(start[1].value()) + acceleration.integral() * half_time.into();
         let beta = Model::from(start[0].value()) + rate.integral() * half_time.into();
 
@@ -172,4 +182,71 @@ fn interpolated<const N: usize>(nodes: &[f64; N], mut values: [f64; N]) -> Model
         powers[0] = value - node * powers[0];
     }
     Model::polynomial(&powers)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gaits::GAITS;
+
+    fn half_step(d: &Description) -> HalfStep {
+        let list = |x: f64| (0..d.prescribed()).map(|k| x * if k % 2 == 0 { 0.4 } else { -0.7 }).collect();
+        HalfStep {
+            duration: 0.2,
+            q_initial: list(1.0),
+            qd_initial: list(3.0),
+            q_interior: vec![list(1.1)],
+            q_final: list(0.9),
+            qd_final: list(-2.0),
+            beta_initial: 0.1,
+            betad_initial: 0.5,
+            beta_final: 0.0,
+            betad_final: 0.0,
+        }
+    }
+
+    /// Both enclose one solution, so they meet.
+    fn meet(outer: &Piece, inner: &Piece) {
+        for tau in [-1.0, -0.5, 0.0, 0.5, 1.0] {
+            for (outer, inner) in outer.beta.iter().zip(&inner.beta) {
+                let [outer, inner] = [outer.at(tau), inner.at(tau)];
+                let apart = (outer.value() - inner.value()).abs();
+                assert!(apart <= outer.rest() + inner.rest(), "{apart:e} > {:e} + {:e}", outer.rest(), inner.rest());
+            }
+        }
+    }
+
+    #[test]
+    fn errors_of_the_polynomial_and_of_the_start_are_within_the_proof() {
+        for gait in GAITS {
+            let d = gait.description();
+            let h = half_step(d);
+            let mut solver = Solver::new(d, &h, 0);
+            let half = 1.0 / 64.0;
+            let share = Model::polynomial(&[half, half]);
+            let half_time = half * h.duration;
+            let exactly = |shift: [f64; 2]| [h.beta_initial + shift[0], h.betad_initial + shift[1]].map(Ball::from);
+            let exact = solver.piece(share, half, exactly([0.0; 2])).unwrap();
+            assert!(exact.beta[0].rest() < 1e-13 && exact.beta[1].rest() < 1e-12);
+
+            // A polynomial that is off gives a wider proof, not a wrong one.
+            let good = solver.picard(share, half_time, exactly([0.0; 2]).map(Ball::value)).unwrap();
+            for spoilt in
+                [Model::from(8e-10), Model::polynomial(&[0.0, -5e-10]), Model::polynomial(&[3e-10, 0.0, 4e-10])]
+            {
+                let found = solver.proven(good + spoilt, share, half_time, exactly([0.0; 2])).unwrap();
+                meet(&found, &exact);
+            }
+            assert!(solver.proven(good + Model::from(1e-6), share, half_time, exactly([0.0; 2])).is_none());
+
+            // A start that is known up to a ball leads wherever it leads from anywhere in it.
+            let reach = [1e-9, 1e-8];
+            let around = std::array::from_fn(|k| exactly([0.0; 2])[k].widened(reach[k]));
+            let found = solver.piece(share, half, around).unwrap();
+            for signs in [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]] {
+                let shift = std::array::from_fn(|k| 0.999 * signs[k] * reach[k]);
+                meet(&found, &solver.piece(share, half, exactly(shift)).unwrap());
+            }
+        }
+    }
 }

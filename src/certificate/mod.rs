@@ -2,7 +2,7 @@
 //!
 //! Joint angles are polynomials, and all else is closed form but β, of which [`enclosure`] proves where it is. The same
 //! physics as the receipt's ([`verify`](crate::verify)) is then evaluated with functions of time instead of numbers
-//! ([`taylor`]), and every margin bounded from below over all t ([`proof`]). The motion's numbers and the robot's are
+//! ([`taylor`]), and every margin bounded from below over all t (`proof.rs`). The motion's numbers and the robot's are
 //! taken for exact; all that arithmetic loses on the way is within the bounds.
 //!
 //! What is claimed: for all t of the step, no margin is below −1e-6, in the natural units of

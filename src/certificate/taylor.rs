@@ -5,7 +5,7 @@
 //! one coefficient it is a ball of numbers. A rest that is not finite says nothing at all.
 //!
 //! Rounding is bounded, not switched: a sum or product of IEEE 754 is off by at most a share [`UNIT`] of itself, and
-//! every bound is made greater by more than its own evaluation can have lost ([`above`]).
+//! every bound is made greater by more than its own evaluation can have lost (`above`).
 
 use num_traits::Zero;
 use std::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
