@@ -39,6 +39,26 @@ fn same_bytes_every_time_and_everywhere() {
     assert_eq!(here, elsewhere);
 }
 
+/// Gaits that lock the same joints share a whole robot; one that locks others has one of its own.
+#[test]
+fn there_is_a_whole_robot_for_every_way_to_lock_joints() {
+    let (_, robot, trot) = files("trot");
+    let stiff = SpecFile {
+        path: "stiff.toml".into(),
+        text: trot.text.replace("[limits]", "locked = { knee = -0.5 }\n\n[limits]"),
+    };
+    let (_, _, curvet) = files("curvet");
+    let gaits = vec![curvet, stiff, trot];
+    let made = generate(&[RobotFiles { module: String::new(), robot, gaits }], Some("crate::model")).unwrap();
+    let source = |name: &str| &made.iter().find(|(n, _)| n == name).unwrap_or_else(|| panic!("no {name}")).1;
+    for (gait, whole, joints) in [("curvet", "whole", 8), ("stiff", "whole2", 4), ("trot", "whole", 8)] {
+        assert!(source(&format!("{gait}.rs")).contains(&format!("super::{whole}::Whole")), "{gait}");
+        assert!(source(&format!("{whole}.rs")).contains(&format!("q: &[f64; {joints}]")), "{gait}");
+        assert!(source("gaits.rs").contains(&format!("pub mod {whole} ")));
+    }
+    assert!(made.iter().all(|(name, _)| name != "whole3.rs"));
+}
+
 /// Walks a file; `kernel` inside of a free function, where only straight lines are allowed.
 #[derive(Default)]
 struct Law {
