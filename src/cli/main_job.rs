@@ -34,7 +34,7 @@ pub fn run(folder: &Path) -> anyhow::Result<bool> {
     std::fs::create_dir_all(folder).map_err(|e| anyhow::anyhow!("cannot create {}: {e}", folder.display()))?;
     output::say!("Optimal gaits at {SPEED} m/s\n");
     output::say!(
-        "{:<8} {:<9} {:>10} {:<7} {:<13} {:>9} {:>9} {:>9}  {:>10} {:<12} active  between",
+        "{:<8} {:<9} {:>10} {:<7} {:<13} {:>9} {:>9} {:>9}  {:>10} {:<12} active  between    real legs",
         "gait",
         "criterion",
         "cost",
@@ -87,7 +87,7 @@ fn row(r: &GaitResult) -> std::io::Result<()> {
     match (r.cost, &r.receipt) {
         (Some(cost), Some(receipt)) => writeln!(
             out,
-            "{:<8} {:<9} {cost:>10.4} {:<7} {:<13} {:>9.1e} {:>9.1e} {:>9.1e}  {paper:>10} {paper_steps:<12} {:<6}  {}",
+            "{:<8} {:<9} {cost:>10.4} {:<7} {:<13} {:>9.1e} {:>9.1e} {:>9.1e}  {paper:>10} {paper_steps:<12} {:<6}  {:<9}  {}",
             r.gait,
             r.criterion.name(),
             r.criterion.unit(),
@@ -97,6 +97,7 @@ fn row(r: &GaitResult) -> std::io::Result<()> {
             receipt.kkt_residual,
             receipt.active.len(),
             r.certificate.as_ref().map_or("", |c| c.standing.name()),
+            r.real_legs.as_ref().map_or("", |legs| legs.verdict().name()),
         ),
         _ => writeln!(out, "{:<8} {:<9} {} {paper:>10} {paper_steps:<12}", r.gait, r.criterion.name(), r.message),
     }

@@ -2,6 +2,18 @@
 
 use super::receipt::{RealLegs, Verdict, Worst};
 
+impl Verdict {
+    /// In a word or two.
+    pub fn name(self) -> &'static str {
+        match self {
+            Verdict::EqualShares => "equal shares",
+            Verdict::UnequalShares => "unequal shares",
+            Verdict::BeyondLimits => "beyond limits",
+            Verdict::NoEquilibrium => "no equilibrium",
+        }
+    }
+}
+
 impl RealLegs {
     /// One sentence: whether the real legs can, and how they share.
     pub fn sentence(&self) -> String {
