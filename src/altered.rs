@@ -1,5 +1,6 @@
 //! A gait with some numbers changed that its dynamics do not contain: limits, ranges, the polynomials' order.
 
+use crate::constraints::sharing::obstacle;
 use crate::model::whole::Whole;
 use crate::model::{Description, Gait, Lever};
 
@@ -20,6 +21,19 @@ impl<'a> Altered<'a> {
     /// The same gait with polynomials of another order (eq. 15).
     pub fn of_order(gait: &'a dyn Gait, order: usize) -> Altered<'a> {
         Altered { gait, description: Description { polynomial_order: order, ..gait.description().clone() } }
+    }
+
+    /// The same gait with its limits at each real leg too.
+    ///
+    /// # Errors
+    /// If they cannot be imposed there.
+    pub fn at_real_legs(gait: &'a dyn Gait) -> Result<Altered<'a>, String> {
+        let mut description = gait.description().clone();
+        description.limits.real_legs = true;
+        match obstacle(&description) {
+            Some(obstacle) => Err(obstacle),
+            None => Ok(Altered { gait, description }),
+        }
     }
 }
 
@@ -83,6 +97,8 @@ impl Gait for Altered<'_> {
         touchdown(leg: usize, q: &[f64], qd: &[f64]);
         curvature(leg: usize, q: &[f64], qd: &[f64], qdd: &[f64], n: &[f64], phi: &[f64], others: &[f64]);
         touchdown_curvature(leg: usize, q: &[f64], qd: &[f64], xi: &[f64], outputs: &[f64]);
+        sharing(leg: usize, q: &[f64], qd: &[f64], qdd: &[f64]);
+        sharing_curvature(leg: usize, q: &[f64], qd: &[f64], qdd: &[f64], weights: &[f64]);
         impact_both(q: &[f64], xd: &[f64]);
     }
 }

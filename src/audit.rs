@@ -3,6 +3,7 @@
 //! [`Readback`](crate::readback::Readback) refuses what contradicts itself; an audit says of each statement whether it was
 //! confirmed, with both numbers where it was not, or why it could not be checked.
 
+use crate::altered::Altered;
 use crate::model::Gait;
 use crate::motion::Motion;
 use crate::readback::gait_of;
@@ -16,9 +17,10 @@ const RELATIVE: f64 = 1e-9;
 const ABSOLUTE: f64 = 1e-13;
 
 /// What is asked of a result: it is what the rest is derived from.
-const GIVEN: [&str; 5] = ["gait", "criterion", "speed", "variables", "fingerprint"];
+const GIVEN: [&str; 6] = ["gait", "criterion", "speed", "variables", "fingerprint", "limits_at_real_legs"];
 /// How it was found. That says nothing about the motion, and cannot be seen from it.
-const HISTORY: [&str; 6] = ["local_optima", "conflicts", "nearest_speed", "search", "seconds", "version"];
+const HISTORY: [&str; 7] =
+    ["local_optima", "virtual_cost", "conflicts", "nearest_speed", "search", "seconds", "version"];
 
 /// What became of a statement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -93,6 +95,12 @@ fn derived(result: &GaitResult, gaits: &[&dyn Gait]) -> Result<GaitResult, (Verd
         return Err((Verdict::NotChecked, reason.into()));
     }
     let motion = Motion { half_steps: result.variables.clone() };
+    let altered;
+    let mut gait = gait;
+    if result.limits_at_real_legs {
+        altered = Altered::at_real_legs(gait).map_err(|obstacle| (Verdict::NotConfirmed, obstacle))?;
+        gait = &altered;
+    }
     GaitResult::of_motion(gait, result.criterion, result.speed, &motion)
         .map_err(|error| (Verdict::NotConfirmed, format!("its motion cannot be derived anew: {error}")))
 }

@@ -3,6 +3,7 @@
 //! The *quantities* of an instant are the torques of all joints, the reaction, the joints' angles and
 //! rates, the swing foot's clearance and the platform's height; each with its gradient in the half step's parameters.
 
+use crate::constraints::sharing;
 use crate::model::{Description, Gait};
 use crate::stance::{Layout, Mesh, Prescribed, Stance, basis_derivatives};
 
@@ -11,11 +12,13 @@ use crate::stance::{Layout, Mesh, Prescribed, Stance, basis_derivatives};
 pub struct Quantities {
     joints: usize,
     components: usize,
+    shared: usize,
 }
 
 impl Quantities {
     pub fn new(description: &Description) -> Quantities {
-        Quantities { joints: description.joints(), components: description.positions() }
+        let shared = if sharing::applies(description) { Shared::new(description).len() } else { 0 };
+        Quantities { joints: description.joints(), components: description.positions(), shared }
     }
 
     /// Γj, N·m.
@@ -49,11 +52,47 @@ impl Quantities {
         self.clearance() + 1
     }
 
+    /// What decides how the real legs share the load, if their limits count: see [`Shared`].
+    pub fn shared(&self) -> std::ops::Range<usize> {
+        self.height() + 1..self.height() + 1 + self.shared
+    }
+
     pub fn len(&self) -> usize {
-        self.height() + 1
+        self.shared().end
     }
 
     pub fn is_empty(&self) -> bool {
+        false
+    }
+}
+
+/// Order of what the kernel `sharing` gives.
+#[derive(Clone, Copy, Debug)]
+pub struct Shared {
+    joints: usize,
+}
+
+impl Shared {
+    pub fn new(description: &Description) -> Shared {
+        let leg = &description.legs[0];
+        Shared { joints: leg.end_joint - leg.first_joint }
+    }
+
+    /// Moment about the vertical (0) or the transverse axis (1).
+    pub fn moment(self, axis: usize) -> usize {
+        axis
+    }
+
+    /// Component of ∂foot/∂q for a joint of the leg in support.
+    pub fn lever(self, joint: usize, component: usize) -> usize {
+        2 + 3 * joint + component
+    }
+
+    pub fn len(self) -> usize {
+        self.lever(self.joints, 0)
+    }
+
+    pub fn is_empty(self) -> bool {
         false
     }
 }
@@ -78,6 +117,8 @@ pub struct Instants {
     inverse: Vec<f64>,
     placement: Vec<f64>,
     swing: [Vec<f64>; 2],
+    /// Results of the `sharing` kernel, a row per node; none if nothing shared is looked at.
+    sharing: Vec<f64>,
     prescribed: Prescribed,
     /// Per node and quantity a row of derivatives in the local parameters.
     gradients: Vec<f64>,
@@ -104,6 +145,7 @@ impl Instants {
             inverse: vec![0.0; n * inverse_length(nq, nj, nc)],
             placement: vec![0.0; n * placement_length(nq, nc)],
             swing: [vec![0.0; nc + nc * 2 * nq], vec![0.0; nc + nc * 2 * nq]],
+            sharing: vec![0.0; n * sharing_length(nq, quantities.shared)],
             prescribed: Prescribed::new(layout.prescribed),
             gradients: vec![0.0; collocation * quantities.len() * layout.len()],
             betadd_p: vec![0.0; collocation * layout.len()],
@@ -155,6 +197,12 @@ impl Instants {
         &self.inverse[node * inverse_length(nq, nj, nc)..][1 + nj + nc..][..(nj + nc + 1) * 3 * nq]
     }
 
+    /// Jacobian of the `sharing` kernel at a node: rows moment, levers; columns q, q̇, q̈. Empty if nothing shared is looked at.
+    pub fn sharing(&self, d: &Description, node: usize) -> &[f64] {
+        let length = sharing_length(d.orientations(), self.quantities.shared);
+        &self.sharing[node * length..][..length][self.quantities.shared..]
+    }
+
     /// Result of the `swing_velocity` kernel at the first (0) or last (1) collocation node.
     pub fn swing_velocity(&self, end: usize) -> &[f64] {
         &self.swing[end]
@@ -196,6 +244,12 @@ impl Instants {
             } else {
                 placement[nc + 1] / (4.0 * s * (1.0 - s))
             };
+            if y.shared > 0 {
+                let length = sharing_length(nq, y.shared);
+                let sharing = &mut self.sharing[k * length..][..length];
+                gait.sharing(leg, &state.q, &state.qd, &state.qdd, sharing);
+                values[y.shared()].copy_from_slice(&sharing[..y.shared]);
+            }
         }
     }
 
@@ -211,10 +265,7 @@ impl Instants {
             self.tabulate(mesh, parameters, k);
             let chain = Chain::new(self, d, stance, k);
             let jacobian = self.jacobian(d, k);
-            let row = |r: usize| {
-                let row = &jacobian[r * 3 * nq..][..3 * nq];
-                [&row[..nq], &row[nq..2 * nq], &row[2 * nq..]]
-            };
+            let row = |r: usize| parts(jacobian, r, nq);
             // β̈ follows from the balance (eq. 10): its row tells how.
             let betadd_p = &mut betadd[k * np..(k + 1) * np];
             let balance = row(nj + nc);
@@ -234,6 +285,9 @@ impl Instants {
             }
             let row = &self.placement(d, k)[2 * nc + nq..][..nq];
             chain.row([row, &[], &[]], None, &mut block[y.height() * np..][..np]);
+            for (r, out) in block[y.shared().start * np..].chunks_mut(np).enumerate() {
+                chain.row(parts(self.sharing(d, k), r, nq), Some(betadd_p), out);
+            }
             let out = &mut block[y.clearance() * np..][..np];
             if k == 0 || k == last {
                 let end = usize::from(k == last);
@@ -276,6 +330,12 @@ impl Instants {
     }
 }
 
+/// Row `r` of a Jacobian in (q, q̇, q̈), by parts.
+fn parts(jacobian: &[f64], r: usize, nq: usize) -> [&[f64]; 3] {
+    let row = &jacobian[r * 3 * nq..][..3 * nq];
+    [&row[..nq], &row[nq..2 * nq], &row[2 * nq..]]
+}
+
 /// Sign and factor that turn the swing foot's vertical velocity into clearance: up first, down last.
 pub fn direction(end: usize) -> f64 {
     if end == 0 { 0.25 } else { -0.25 }
@@ -283,6 +343,10 @@ pub fn direction(end: usize) -> f64 {
 
 fn inverse_length(nq: usize, nj: usize, nc: usize) -> usize {
     1 + nj + nc + (nj + nc + 1) * 3 * nq
+}
+
+fn sharing_length(nq: usize, shared: usize) -> usize {
+    shared + shared * 3 * nq
 }
 
 fn placement_length(nq: usize, nc: usize) -> usize {

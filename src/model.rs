@@ -131,6 +131,9 @@ pub struct Limits {
     pub half_step_duration: [f64; 2],
     /// Of the platform's mass centre above the ground, m.
     pub min_platform_height: f64,
+    /// Whether contact, torques and speeds must also hold at each real leg (see `constraints::sharing`), not only at the
+    /// virtual legs.
+    pub real_legs: bool,
 }
 
 /// Floating-point operations of a generated kernel.
@@ -303,7 +306,8 @@ pub trait Gait: Sync {
 
     /// Impact on the foot of `leg` (eq. 12): Ẋ⁺, impulse.
     fn impact(&self, leg: usize, q: &[f64], xd: &[f64], out: &mut [f64]);
-    /// Impact on the foot of `leg` after support on the other: q̇⁺, impulse, leaving, landing, Jacobian in (q, q̇⁻).
+    /// Impact on the foot of `leg` after support on the other: q̇⁺, impulse, leaving, landing, Jacobian in (q, q̇⁻);
+    /// where the platform rolls also couple, pitch, and their Jacobian.
     fn touchdown(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]);
     /// Gradient and second derivatives (q·q, q·q̇, q·q̈, q̇·q̇) of the weighted sum of an instant's outputs;
     /// `n` weighs the torque of every joint, then the balance of eq. 10.
@@ -320,6 +324,17 @@ pub trait Gait: Sync {
     );
     /// Second derivatives (q·q, q·q̇⁻, q·q̇⁺) of a touchdown's weighted results.
     fn touchdown_curvature(&self, leg: usize, q: &[f64], qd: &[f64], xi: &[f64], outputs: &[f64], out: &mut [f64]);
+    /// Where the platform rolls: moment (y, z) about the stance foot, ∂foot/∂q of its leg, ∂(these)/∂(q, q̇, q̈). Elsewhere
+    /// the real legs share equally: not numbers.
+    fn sharing(&self, leg: usize, q: &[f64], qd: &[f64], qdd: &[f64], out: &mut [f64]) {
+        let _ = (leg, q, qd, qdd);
+        out.fill(f64::NAN);
+    }
+    /// Gradient and second derivatives, as of [`Gait::curvature`], of the weighted sum of what [`Gait::sharing`] gives.
+    fn sharing_curvature(&self, leg: usize, q: &[f64], qd: &[f64], qdd: &[f64], weights: &[f64], out: &mut [f64]) {
+        let _ = (leg, q, qd, qdd, weights);
+        out.fill(f64::NAN);
+    }
     /// Both feet stay (eq. 11): Ẋ⁺, impulses on foot 1 and 2, pivots, scale.
     fn impact_both(&self, q: &[f64], xd: &[f64], out: &mut [f64]);
 }

@@ -1,6 +1,6 @@
 //! A result that comes back from a file: it is what it says, and of this build's robot.
 
-use crate::model::Gait;
+use crate::model::{Description, Gait, Limits};
 use crate::motion::Motion;
 use crate::result::{GRID, GaitResult};
 use crate::verify::verify;
@@ -61,6 +61,10 @@ pub fn gait_of<'a>(result: &GaitResult, gaits: &[&'a dyn Gait]) -> Result<&'a dy
         let known = gaits.iter().map(|g| g.description().key).collect::<Vec<_>>().join(", ");
         return Err(Unusable::UnknownGait { gait: result.gait.clone(), known });
     }
-    let same = candidates.find(|g| g.description().fingerprint() == result.fingerprint);
+    let fingerprint = |d: &Description| {
+        let limits = Limits { real_legs: result.limits_at_real_legs, ..d.limits.clone() };
+        Description { limits, ..d.clone() }.fingerprint()
+    };
+    let same = candidates.find(|g| fingerprint(g.description()) == result.fingerprint);
     same.copied().ok_or_else(|| Unusable::OtherRobot { name: result.name() })
 }

@@ -49,6 +49,12 @@ pub struct GaitResult {
     /// The criterion, as the receipt's own integration gives it. Absent without an optimum.
     pub cost: Option<f64>,
     pub costs: Option<Costs>,
+    /// Whether the limits hold at each real leg by constraint, not only at the virtual legs.
+    #[serde(default)]
+    pub limits_at_real_legs: bool,
+    /// What the optimum without these further constraints costs, where it was looked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub virtual_cost: Option<f64>,
     /// s, per half step that defines the gait.
     #[serde(default)]
     pub durations: Vec<f64>,
@@ -209,6 +215,8 @@ impl GaitResult {
             message: String::new(),
             cost: None,
             costs: None,
+            limits_at_real_legs: d.limits.real_legs,
+            virtual_cost: None,
             durations: Vec::new(),
             step_length: None,
             polynomial_order: d.polynomial_order,

@@ -112,6 +112,7 @@ fn gradients_agree_with_differences_for_every_gait_criterion_and_order() {
                 check(*gait, criterion, seed);
             }
             check(&Altered::of_order(*gait, 6), criterion, 0);
+            check(&Altered::at_real_legs(*gait).unwrap(), criterion, 0);
         }
     }
 }
@@ -136,15 +137,16 @@ fn lagrangian_gradient(cycle: &mut Cycle, theta: &[f64], lambda: &[f64], mu: &[f
 
 #[test]
 fn the_hessian_of_the_lagrangian_agrees_with_differences_of_its_gradient() {
-    for gait in GAITS {
+    let at_real_legs: Vec<_> = GAITS.iter().map(|gait| Altered::at_real_legs(*gait).unwrap()).collect();
+    for gait in GAITS.iter().copied().chain(at_real_legs.iter().map(|g| g as &dyn Gait)) {
         for criterion in Criterion::ALL {
             let d = gait.description();
             let mut rng = fastrand::Rng::with_seed(7);
-            let mut cycle = Cycle::new(*gait, criterion, 0.6);
+            let mut cycle = Cycle::new(gait, criterion, 0.6);
             let mut values = Values::zeros(cycle.equalities(), cycle.inequalities());
             let theta = loop {
                 let plan = Plan::random(d, &mut rng);
-                let theta = cycle.theta(&walk(*gait, &plan, 0.6));
+                let theta = cycle.theta(&walk(gait, &plan, 0.6));
                 if cycle.evaluate(&theta, &mut values).is_ok() {
                     break theta;
                 }

@@ -3,6 +3,7 @@
 #[path = "export/python.rs"]
 mod python;
 
+use piaffe::altered::Altered;
 use piaffe::four_legs::{Equations, Instant, Legs, Lift, Limits, RealLegs, Shares, Verdict, best};
 use piaffe::gaits::GAITS;
 use piaffe::model::Gait;
@@ -189,6 +190,41 @@ fn no_other_shares_leave_more_room() {
 }
 
 /// A biped's feet are aside of its mass centre: in the plane it walks on them, in space it would fall over.
+/// The optimizer's formulas know one way to share the load; the cone program, from the whole robot's equations, all of them.
+#[test]
+fn an_amble_with_limits_at_real_legs_is_one_that_they_can_walk() {
+    let amble = gait("amble");
+    let altered = Altered::at_real_legs(amble).unwrap();
+    for criterion in Criterion::ALL {
+        let (without, motion) = optimum(amble, criterion);
+        let verdict = |motion: &Motion| RealLegs::new(amble, motion).unwrap().verdict();
+        assert_eq!(verdict(&motion), Verdict::BeyondLimits);
+        let (with, motion) = optimum(&altered, criterion);
+        assert_eq!(verdict(&motion), Verdict::UnequalShares);
+        assert!(with.cost > without.cost.map(|c| 1.05 * c), "{:?} {:?}", with.cost, without.cost);
+    }
+}
+
+/// Where the hips are level with the mass centre, legs that take equal impulses in their plane do not pitch the robot.
+#[test]
+fn an_impact_asks_for_no_moment_that_the_feet_cannot_give() {
+    let amble = gait("amble");
+    let d = amble.description();
+    let (n, nc) = (d.orientations(), d.positions());
+    let before = (n + nc + 2) * (1 + 2 * n);
+    let mut rng = fastrand::Rng::with_seed(3);
+    for leg in [0, 1].repeat(50) {
+        let q: Vec<f64> = (0..n).map(|_| 2.0 * rng.f64() - 1.0).collect();
+        let qd: Vec<f64> = (0..n).map(|_| 6.0 * rng.f64() - 3.0).collect();
+        let mut out = vec![f64::NAN; before + 3];
+        amble.touchdown(leg, &q, &qd, &mut out);
+        let [couple_y, couple_z, pitch] = [out[before], out[before + 1], out[before + 2]];
+        assert!(pitch.abs() < 1e-12 * d.total_mass(), "{pitch}");
+        // The couple lies across the legs' plane.
+        assert!((couple_y * q[n - 1].cos() + couple_z * q[n - 1].sin()).abs() < 1e-12, "{couple_y} {couple_z}");
+    }
+}
+
 #[test]
 fn what_no_reactions_balance_is_said() {
     let gait = gait("rabbit/walk");

@@ -21,6 +21,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use piaffe::gaits::GAITS;
 use piaffe::model::Gait;
 use piaffe::motion::Criterion;
+use piaffe::search::local::Task;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -112,6 +113,9 @@ enum Command {
         /// Of the random starts.
         #[arg(long, default_value_t = 1)]
         seed: u64,
+        /// Impose contact, torque and speed limits at each real leg, not only at the virtual ones.
+        #[arg(long)]
+        real_legs: bool,
         /// Number of starts; the first is a default walk, the others are drawn at random.
         #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=100_000))]
         starts: u32,
@@ -201,6 +205,9 @@ enum Command {
         /// FROM..TO:STEP or a list, m/s.
         #[arg(long, value_parser = sweep::parse_speeds, default_value = "0.1..1.6:0.1")]
         speeds: std::vec::Vec<f64>,
+        /// Impose contact, torque and speed limits at each real leg, not only at the virtual ones.
+        #[arg(long)]
+        real_legs: bool,
         /// Folder for the results.
         #[arg(long = "out", value_name = "DIR", default_value = "sweep")]
         folder: PathBuf,
@@ -241,9 +248,10 @@ pub fn run() -> ExitCode {
         Some(Command::Dynamics { gait, file }) => dynamics::run(by_name(&gait), &file),
         Some(Command::Model { gait, latex, json }) => model::run(by_name(&gait), latex, json.as_deref()),
         Some(Command::Import { file, folder, lock }) => import::run(&file, folder, lock),
-        Some(Command::Optimize { gait, criterion, speed, seed, starts, json }) => {
+        Some(Command::Optimize { gait, criterion, speed, seed, real_legs, starts, json }) => {
             let settings = piaffe::search::multi_start::Settings { starts: starts as usize, seed };
-            optimize::run(by_name(&gait), criterion_by_name(&criterion), speed, &settings, json.as_deref())
+            let task = Task { gait: by_name(&gait), criterion: criterion_by_name(&criterion), speed };
+            optimize::run(task, real_legs, &settings, json.as_deref())
         }
         Some(Command::Completions { shell }) => manual::completions(shell),
         Some(Command::Manual { out }) => manual::pages(&out),
@@ -251,13 +259,13 @@ pub fn run() -> ExitCode {
         Some(Command::Lift { result, rate, format, out }) => lift::run(&result, format, rate, &out),
         Some(Command::Verify { results, json }) => verify::run(&results, json.as_deref()),
         Some(Command::Report { results, detail, out }) => report::run(&results, detail, &out),
-        Some(Command::Sweep { gait, criterion, speeds, folder, starts, seed }) => {
+        Some(Command::Sweep { gait, criterion, speeds, real_legs, folder, starts, seed }) => {
             let settings = piaffe::search::multi_start::Settings { starts: starts as usize, seed };
             let gaits: Vec<_> =
                 if gait.is_empty() { first_robot().collect() } else { gait.iter().map(|g| by_name(g)).collect() };
             let wanted = |c: &Criterion| criterion.iter().any(|w| w == "all" || w == c.name());
             let criteria: Vec<Criterion> = Criterion::ALL.into_iter().filter(wanted).collect();
-            sweep::run(&gaits, &criteria, &speeds, &folder, &settings)
+            sweep::run(&gaits, real_legs, &criteria, &speeds, &folder, &settings)
         }
     };
     match outcome {

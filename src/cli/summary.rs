@@ -48,6 +48,10 @@ pub fn print(description: &Description, r: &GaitResult) -> std::io::Result<()> {
     }
     if let (Some(cost), Some(costs)) = (r.cost, r.costs) {
         writeln!(out, "  cost            {cost:.4} {}", r.criterion.unit())?;
+        if let Some(without) = r.virtual_cost {
+            let more = 100.0 * (cost / without - 1.0);
+            writeln!(out, "  at real legs    {more:+.3} % against {without:.4} with limits at the virtual legs only")?;
+        }
         for criterion in Criterion::ALL {
             writeln!(out, "  {:<15} {:.4} {}", criterion.name(), costs.of(criterion), criterion.unit())?;
         }

@@ -3,6 +3,7 @@
 use super::journal::{Folder, effort, file};
 use super::{output, report};
 use indicatif::{ProgressBar, ProgressStyle};
+use piaffe::altered::Altered;
 use piaffe::model::Gait;
 use piaffe::motion::Criterion;
 use piaffe::result::{GaitResult, Status};
@@ -25,11 +26,13 @@ struct Line {
 
 pub fn run(
     gaits: &[&'static dyn Gait],
+    real_legs: bool,
     criteria: &[Criterion],
     speeds: &[f64],
     path: &Path,
     settings: &Settings,
 ) -> anyhow::Result<bool> {
+    let gaits = &if real_legs { at_real_legs(gaits)? } else { gaits.to_vec() };
     let visits = VISITS * (criteria.len() * speeds.len()) as u64;
     let folder = Folder::open(path, progress(gaits.iter().map(|g| visits * effort(*g)).sum()))?;
     folder.compare(&gaits.iter().map(|g| *g as &dyn Gait).collect::<Vec<_>>(), criteria, speeds, settings);
@@ -61,6 +64,16 @@ pub fn run(
         output::say!("To be seen in {}", page.display());
     }
     Ok(any)
+}
+
+/// The gaits with their limits at each real leg.
+fn at_real_legs(gaits: &[&'static dyn Gait]) -> anyhow::Result<Vec<&'static dyn Gait>> {
+    let altered = |gait: &&'static dyn Gait| {
+        let altered = Altered::at_real_legs(*gait).map_err(anyhow::Error::msg)?;
+        // Until the program ends, like all other gaits.
+        Ok(Box::leak(Box::new(altered)) as &'static dyn Gait)
+    };
+    gaits.iter().map(altered).collect()
 }
 
 fn line(gait: &'static dyn Gait, criteria: &[Criterion], speeds: &[f64], settings: &Settings, folder: &Folder) -> Line {

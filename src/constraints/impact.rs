@@ -2,6 +2,7 @@
 //!
 //! Impulse upward; tangential impulse at most μ times it; vertical velocity of the leaving foot ≥ 0.
 
+use super::sharing::{applies, first, length, offsets, second};
 use crate::model::Description;
 use crate::verify::scalar::Scalar;
 
@@ -13,6 +14,8 @@ pub struct ImpactConstraints<T = f64> {
     /// Unit of an impulse: total mass times 1 m/s.
     unit: f64,
     components: usize,
+    /// The real feet that land, from the virtual foot along Xf, if their limits count.
+    feet: Vec<f64>,
 }
 
 impl<T: Scalar> ImpactConstraints<T> {
@@ -23,6 +26,7 @@ impl<T: Scalar> ImpactConstraints<T> {
             lateral: description.lateral,
             unit: description.total_mass(),
             components: description.positions(),
+            feet: if applies(description) { offsets(description) } else { Vec::new() },
         }
     }
 
@@ -30,18 +34,39 @@ impl<T: Scalar> ImpactConstraints<T> {
         match (i, self.lateral) {
             (0, _) => "vertical impulse",
             (1, _) | (2, false) => "friction of the impulse",
-            _ => "leaving foot",
+            _ if i < self.of_virtual_leg() => "leaving foot",
+            _ => "friction of the impulse on a real foot",
         }
     }
 
     /// Number of constraints.
     pub fn count(&self) -> usize {
+        self.of_virtual_leg() + self.feet.len()
+    }
+
+    fn of_virtual_leg(&self) -> usize {
         if self.lateral { 3 } else { 4 }
     }
 
-    /// Scaled value `i` from (impulse…, leaving velocity).
+    /// `μ I_y − |(I_x, I_z)|` of a real foot from the results of a touchdown; see `sharing`.
+    fn friction_of_foot<S: Scalar>(&self, friction: S, foot: usize, y: impl Fn(usize) -> S) -> S {
+        let over = 0.5 / self.feet[foot];
+        let vertical = y(1).scale(0.5) + y(3).scale(over);
+        let lateral = y(2).scale(0.5) + y(4).scale(over);
+        friction * vertical - length([y(0).scale(0.5), lateral])
+    }
+
+    /// Where impulse and couple stand among a touchdown's results.
+    fn index(&self, k: usize) -> usize {
+        if k < self.components { k } else { k + 2 }
+    }
+
+    /// Scaled value `i` from (impulse…, leaving, landing, couple…).
     pub fn value(&self, i: usize, y: &[T]) -> T {
         let (mu, unit) = (self.friction, T::from(self.unit));
+        if let Some(foot) = i.checked_sub(self.of_virtual_leg()) {
+            return self.friction_of_foot(mu, foot, |k| y[self.index(k)]) / unit;
+        }
         match (i, self.lateral) {
             (0, _) => y[1] / unit,
             (1, true) => (mu * y[1] - norm(y)) / unit,
@@ -57,8 +82,13 @@ impl ImpactConstraints {
         ImpactConstraints::with(description, description.limits.friction)
     }
 
-    /// Calls `add(index in (impulse…, leaving), partial derivative)` for value `i`.
+    /// Calls `add(index in (impulse…, leaving, landing, couple…), partial derivative)` for value `i`.
     pub fn partials(&self, i: usize, y: &[f64], mut add: impl FnMut(usize, f64)) {
+        if let Some(foot) = i.checked_sub(self.of_virtual_leg()) {
+            let own: [f64; 5] = std::array::from_fn(|k| y[self.index(k)]);
+            let gradient = first(&own, |v| self.friction_of_foot(self.friction.into(), foot, |k| v[k]));
+            return (0..5).for_each(|k| add(self.index(k), gradient[k] / self.unit));
+        }
         let mu = self.friction / self.unit;
         match (i, self.lateral) {
             (0, _) => add(1, 1.0 / self.unit),
@@ -78,6 +108,14 @@ impl ImpactConstraints {
 
     /// Calls `add(index, index, second derivative)` for value `i`.
     pub fn curvature(&self, i: usize, y: &[f64], mut add: impl FnMut(usize, usize, f64)) {
+        if let Some(foot) = i.checked_sub(self.of_virtual_leg()) {
+            let own: [f64; 5] = std::array::from_fn(|k| y[self.index(k)]);
+            let hessian = second(&own, |v| self.friction_of_foot(self.friction.into(), foot, |k| v[k]));
+            for (a, row) in hessian.iter().enumerate() {
+                row.iter().enumerate().for_each(|(b, x)| add(self.index(a), self.index(b), x / self.unit));
+            }
+            return;
+        }
         if !(self.lateral && i == 1) {
             return;
         }

@@ -9,6 +9,7 @@ mod ground;
 mod impact;
 mod range;
 mod reaction;
+pub mod sharing;
 mod swing;
 
 pub use impact::ImpactConstraints;
@@ -17,6 +18,7 @@ use crate::instant::Quantities;
 use crate::model::Description;
 use crate::verify::numbers::Numbers;
 use crate::verify::scalar::Scalar;
+use sharing::Share;
 
 /// A constraint on the quantities of an instant: `value ≥ 0`.
 #[derive(Clone, Debug)]
@@ -37,6 +39,8 @@ pub enum Form<T = f64> {
     Linear { offset: T, terms: Vec<(usize, T)> },
     /// `factor · normal − ‖tangential‖`.
     Cone { normal: usize, factor: T, tangential: Vec<usize> },
+    /// A limit on one of the real legs.
+    Share(Share<T>),
 }
 
 /// All path constraints of a gait.
@@ -52,6 +56,7 @@ pub fn path_constraints_of<T: Scalar>(description: &Description, limits: &Number
     list.push(swing::constraint(description, limits, &y));
     list.push(ground::constraint(description, limits, &y));
     list.extend(range::constraints(description, limits, &y));
+    list.extend(sharing::constraints(description, limits, &y));
     list
 }
 
@@ -66,6 +71,7 @@ impl<T: Scalar> PathConstraint<T> {
         let value = match &self.form {
             Form::Linear { offset, terms } => *offset + terms.iter().fold(T::zero(), |sum, (q, c)| sum + *c * y[*q]),
             Form::Cone { normal, factor, tangential } => *factor * y[*normal] - norm(y, tangential),
+            Form::Share(share) => share.value(y),
         };
         value / T::from(self.unit)
     }
@@ -84,12 +90,17 @@ impl PathConstraint {
                     add(*q, -y[*q] / norm / self.unit);
                 }
             }
+            Form::Share(share) => share.partials(y, |q, partial| add(q, partial / self.unit)),
         }
     }
 
-    /// Calls `add(quantity, quantity, second derivative)`; only a cone has any.
+    /// Calls `add(quantity, quantity, second derivative)`.
     pub fn curvature(&self, y: &[f64], mut add: impl FnMut(usize, usize, f64)) {
-        let Form::Cone { tangential, .. } = &self.form else { return };
+        let tangential = match &self.form {
+            Form::Linear { .. } => return,
+            Form::Share(share) => return share.curvature(y, |a, b, second| add(a, b, second / self.unit)),
+            Form::Cone { tangential, .. } => tangential,
+        };
         let norm = norm(y, tangential).max(TINY);
         for a in tangential {
             for b in tangential {

@@ -12,7 +12,7 @@
 //! then is written once instead of twice.
 
 use super::phase::Phase;
-use super::problem::CLOSURE;
+use super::problem::{CLOSURE, pitch, pitch_unit};
 use super::{Cycle, Variables, renamed};
 use crate::instant::direction;
 use crate::lgl::NODES;
@@ -59,6 +59,8 @@ struct PhaseWork {
     /// Per node ∂L/∂(β, β̇) through the quantities, and the multiplier of the balance.
     direct: Vec<[f64; 3]>,
     out: Vec<f64>,
+    /// The same of what real legs share.
+    shared: Vec<f64>,
     n: Vec<f64>,
     /// One vector of local parameters per unactuated column of G.
     v: [Vec<f64>; 3],
@@ -79,6 +81,7 @@ impl Workspace {
                 stationarity: Vec::with_capacity(phase.mesh.collocation()),
                 direct: Vec::with_capacity(phase.mesh.collocation()),
                 out: z(3 * nq + 4 * nq * nq),
+                shared: z(3 * nq + 4 * nq * nq),
                 n: z(d.joints() + 1),
                 v: [z(np), z(np), z(np)],
                 scratch: z(np),
@@ -89,7 +92,7 @@ impl Workspace {
             touchdown: z(3 * nq * nq),
             small: z(4 * nq * nq),
             xi: z(nq),
-            outputs: z(nc + 2),
+            outputs: z(phase.impact.len()),
             kernel: z(3 * nq + 4 * nq * nq),
             rows: z(2 * nq * n),
             zeros: z(nq + d.joints() + nc + 1),
@@ -287,8 +290,11 @@ impl Cycle<'_> {
         for c in 0..self.impact.count() {
             let multiplier = mu[first + c];
             if multiplier != 0.0 {
-                self.impact.partials(c, b.impact(d), |i, partial| work.outputs[i] -= multiplier * partial);
+                self.impact.partials(c, &b.impact, |i, partial| work.outputs[i] -= multiplier * partial);
             }
+        }
+        if let Some(multiplier) = lambda.get(CLOSURE * self.phases.len() + 1 + before) {
+            work.outputs[pitch(d)] -= multiplier / pitch_unit(d);
         }
         self.gait.touchdown_curvature(1 - b.leg, &b.q_end, &b.qd_end, &work.xi, &work.outputs, &mut work.touchdown);
         let (q_q, rest) = work.touchdown.split_at(nq * nq);
@@ -315,7 +321,7 @@ impl Cycle<'_> {
         for c in 0..self.impact.count() {
             let multiplier = mu[first + c];
             if multiplier != 0.0 {
-                self.impact.curvature(c, b.impact(d), |i, j, second| {
+                self.impact.curvature(c, &b.impact, |i, j, second| {
                     let (a, b) = (b.touchdown_row(d, nq + i), b.touchdown_row(d, nq + j));
                     for (r, x) in a.iter().enumerate() {
                         for (s, y) in b.iter().enumerate() {
@@ -426,6 +432,12 @@ impl PhaseWork {
             betad += weight * entry(row, 1);
             betadd += weight * entry(row, 2);
         }
+        let sharing = p.instants.sharing(d, node);
+        for (weight, row) in w[y.shared()].iter().zip(sharing.chunks(3 * nq)) {
+            beta += weight * row[d.unactuated];
+            betad += weight * row[nq + d.unactuated];
+            betadd += weight * row[2 * nq + d.unactuated];
+        }
         let balance = -betadd / entry(nj + nc, 2);
         beta += balance * entry(nj + nc, 0);
         betad += balance * entry(nj + nc, 1);
@@ -489,6 +501,11 @@ impl PhaseWork {
         let others = [chi, kappa, height, self.travel_weight(p, node), velocity, w[y.height()]];
         let state = &p.instants.states[node];
         gait.curvature(p.leg, &state.q, &state.qd, &state.qdd, &self.n, &w[y.force(0)..][..nc], &others, &mut self.out);
+        let shared = &w[y.shared()];
+        if shared.iter().any(|w| *w != 0.0) {
+            gait.sharing_curvature(p.leg, &state.q, &state.qd, &state.qdd, shared, &mut self.shared);
+            self.out.iter_mut().zip(&self.shared).for_each(|(out, shared)| *out += shared);
+        }
         let (gradient, blocks) = self.out.split_at(3 * nq);
         let (q_q, rest) = blocks.split_at(nq * nq);
         let (q_qd, rest) = rest.split_at(nq * nq);

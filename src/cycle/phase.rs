@@ -9,6 +9,9 @@ use crate::lgl::NODES;
 use crate::model::{Description, Gait};
 use crate::stance::{Layout, Mesh, Stance};
 
+/// Length of a touchdown's couple and pitch, which come after everything else.
+const SHARED: usize = 3;
+
 /// State of a half step: what the last simulation left, and the derivatives of the last linearization.
 pub struct Phase {
     /// Stance leg.
@@ -31,6 +34,8 @@ pub struct Phase {
     /// `touchdown` and `placement` kernels at the end.
     pub touchdown: Vec<f64>,
     pub placement: Vec<f64>,
+    /// Of the touchdown the impulse, leaving and landing velocity and, where the platform rolls, couple and pitch.
+    pub impact: Vec<f64>,
     /// `momentum` kernel: σ and its gradient in (q, q̇), at the start and at the wanted end.
     pub momentum_start: Vec<f64>,
     pub momentum_end: Vec<f64>,
@@ -54,6 +59,7 @@ impl Phase {
         let (nq, nc) = (d.orientations(), d.positions());
         let n = Variables::new(d).total();
         let instants = Instants::new(d, &mesh);
+        let shared = if d.lateral { SHARED } else { 0 };
         let z = |count: usize| vec![0.0; count];
         Phase {
             leg,
@@ -68,7 +74,8 @@ impl Phase {
             qd_start: z(nq),
             q_end: z(nq),
             qd_end: z(nq),
-            touchdown: z(nq + nc + 2 + (nq + nc + 2) * 2 * nq),
+            touchdown: z((nq + nc + 2 + shared) * (1 + 2 * nq)),
+            impact: z(nc + 2 + shared),
             placement: z(2 * nc + 2 * nc * nq),
             momentum_start: z(1 + 2 * nq),
             momentum_end: z(1 + 2 * nq),
@@ -111,15 +118,21 @@ impl Phase {
         &self.linearized[node * count..][..count]
     }
 
-    /// Row of ∂(q̇⁺, impulse, leaving, landing)/∂(q, q̇⁻) at the end.
+    /// Row of ∂(q̇⁺, impulse, leaving, landing, couple, pitch)/∂(q, q̇⁻) at the end.
     pub fn touchdown_row(&self, d: &Description, row: usize) -> &[f64] {
-        let (nq, nc) = (d.orientations(), d.positions());
-        &self.touchdown[nq + nc + 2 + row * 2 * nq..][..2 * nq]
+        let nq = d.orientations();
+        let rows = nq + d.positions() + 2;
+        // Values of couple and pitch stand between their rows and those before.
+        let values = rows + if row < rows { 0 } else { SHARED };
+        &self.touchdown[values + row * 2 * nq..][..2 * nq]
     }
 
-    /// Impulse and leaving velocity at the end.
-    pub fn impact(&self, d: &Description) -> &[f64] {
-        &self.touchdown[d.orientations()..][..d.positions() + 1]
+    fn gather_impact(&mut self, d: &Description) {
+        let nq = d.orientations();
+        let rows = nq + d.positions() + 2;
+        let (first, shared) = self.impact.split_at_mut(rows - nq);
+        first.copy_from_slice(&self.touchdown[nq..rows]);
+        shared.copy_from_slice(&self.touchdown[rows * (1 + 2 * nq)..][..shared.len()]);
     }
 
     /// ∂(vertical position of the swing foot)/∂q at the wanted end.
@@ -132,6 +145,7 @@ impl Phase {
     pub fn end(&mut self, gait: &dyn Gait, variables: &Variables, own: &[f64]) {
         variables.end_state(own, &mut self.q_end, &mut self.qd_end);
         gait.touchdown(1 - self.leg, &self.q_end, &self.qd_end, &mut self.touchdown);
+        self.gather_impact(gait.description());
         gait.placement(self.leg, &self.q_end, &mut self.placement);
         gait.momentum(self.leg, &self.q_end, &self.qd_end, &mut self.momentum_end);
     }

@@ -7,6 +7,7 @@
 use super::dip::Dip;
 use super::{Cycle, Label, renamed};
 use crate::constraints::PathConstraint;
+use crate::constraints::sharing::pitches;
 use crate::lgl::NODES;
 use crate::model::Description;
 use crate::sqp::{self, Problem, Undefined, Values};
@@ -14,9 +15,20 @@ use crate::sqp::{self, Problem, Undefined, Values};
 /// Equalities of each half step: closure of β and of σ, touchdown.
 pub const CLOSURE: usize = 3;
 
-/// Number of equalities: those of each half step, and the mean speed.
+/// Number of equalities: those of each half step, the mean speed, and for real legs that impacts do not pitch the robot.
 pub fn equalities(d: &Description) -> usize {
-    CLOSURE * d.phases() + 1
+    let pitching = if pitches(d) { d.phases() } else { 0 };
+    CLOSURE * d.phases() + 1 + pitching
+}
+
+/// Where an impact's change of angular momentum about the transverse axis stands among its results.
+pub fn pitch(d: &Description) -> usize {
+    d.positions() + 2 + 2
+}
+
+/// Unit of an angular momentum: the robot on a stretched leg at 1 m/s.
+pub fn pitch_unit(d: &Description) -> f64 {
+    d.total_mass() * d.leg_length()
 }
 
 /// What an inequality row is.
@@ -140,10 +152,13 @@ impl Cycle<'_> {
     /// Which equality `i` is, in words.
     pub fn equality_label(&self, i: usize) -> Label {
         let names = ["closure of β", "closure of σ", "touchdown height"];
-        match self.phases.get(i / CLOSURE) {
-            Some(p) => Label { name: names[i % CLOSURE].into(), half_step: i / CLOSURE + 1, time: p.duration() },
-            None => Label { name: "mean speed".into(), half_step: self.phases.len(), time: 0.0 },
-        }
+        let speed = CLOSURE * self.phases.len();
+        let (name, phase) = match i {
+            _ if i < speed => (names[i % CLOSURE], i / CLOSURE),
+            _ if i == speed => return Label { name: "mean speed".into(), half_step: self.phases.len(), time: 0.0 },
+            _ => ("pitching at the impact on real feet", i - speed - 1),
+        };
+        Label { name: name.into(), half_step: phase + 1, time: self.phases[phase].duration() }
     }
 
     /// Which variable's bound `i` is, in words: only durations are bounded.
@@ -230,6 +245,14 @@ impl Cycle<'_> {
                 row[k * m + self.variables.duration()] -= self.speed / d.leg_length();
             }
         }
+        let (pitch, unit) = (nq + pitch(d), pitch_unit(d));
+        for (k, (p, row)) in self.phases.iter().zip(rows).enumerate() {
+            let jacobian = p.touchdown_row(d, pitch);
+            for j in 0..nq {
+                row[k * m + self.variables.q(j)] += jacobian[j] / unit;
+                row[k * m + self.variables.qd(j)] += jacobian[nq + j] / unit;
+            }
+        }
     }
 
     fn differentiate_impacts(&mut self) {
@@ -240,7 +263,7 @@ impl Cycle<'_> {
         for (k, p) in self.phases.iter().enumerate() {
             for c in 0..count {
                 let row = &mut self.impact_rows[(k * count + c) * n..][..n];
-                self.impact.partials(c, p.impact(d), |i, partial| {
+                self.impact.partials(c, &p.impact, |i, partial| {
                     let jacobian = p.touchdown_row(d, nq + i);
                     for j in 0..nq {
                         row[k * m + self.variables.q(j)] += partial * jacobian[j];
@@ -286,7 +309,11 @@ impl Problem for Cycle<'_> {
             equalities[2] = p.placement[d.positions() + 1] / d.leg_length();
             duration += p.duration();
         }
-        out.equalities[CLOSURE * self.phases.len()] = (self.travel - self.speed * duration) / d.leg_length();
+        let (speed, pitching) = (CLOSURE * self.phases.len(), CLOSURE * self.phases.len() + 1);
+        out.equalities[speed] = (self.travel - self.speed * duration) / d.leg_length();
+        for (slot, p) in out.equalities[pitching..].iter_mut().zip(&self.phases) {
+            *slot = p.impact[pitch(d)] / pitch_unit(d);
+        }
         let mut slots = out.inequalities.iter_mut();
         for p in &self.phases {
             for node in 0..p.mesh.collocation() {
@@ -303,7 +330,7 @@ impl Problem for Cycle<'_> {
         }
         for p in &self.phases {
             for (c, slot) in (0..self.impact.count()).zip(&mut slots) {
-                *slot = self.impact.value(c, p.impact(d));
+                *slot = self.impact.value(c, &p.impact);
             }
         }
         Ok(())

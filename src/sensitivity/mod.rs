@@ -6,6 +6,7 @@
 
 mod lagrangian;
 
+use crate::constraints::sharing::applies;
 use crate::cycle::Place;
 use crate::model::Gait;
 use crate::motion::{Criterion, Motion};
@@ -50,13 +51,13 @@ pub struct Sensitivity {
 }
 
 /// The sensitivities of a motion that minimizes `criterion` at `speed` (m/s). `None` without levers
-/// ([`Gait::levers`]) or if the motion cannot be followed.
+/// ([`Gait::levers`]), with limits at each real leg, or if the motion cannot be followed.
 ///
 /// # Panics
 /// If the motion has not the numbers that the gait needs; `verify` tells.
 pub fn sensitivities(gait: &dyn Gait, criterion: Criterion, speed: f64, motion: &Motion) -> Option<Sensitivities> {
     let levers = gait.levers();
-    if levers.is_empty() {
+    if levers.is_empty() || applies(gait.description()) {
         return None;
     }
     let linearized = Linearized::new(gait, criterion, speed, motion).ok()?;

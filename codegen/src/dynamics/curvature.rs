@@ -94,30 +94,37 @@ impl Instant {
 }
 
 fn instant(model: &mut Model, leg: usize) -> Kernel {
-    let (q, qd, qdd) = (model.q(0), model.q(1), model.q(2));
     let Instant { n, phi, others, sum } = Instant::new(model, leg);
-    let gradient: Vec<Poly> = q.iter().chain(&qd).chain(&qdd).map(|s| model.ring.derivative(&sum, *s)).collect();
-    let (by_q, rest) = gradient.split_at(q.len());
-    let by_qd = &rest[..q.len()];
-    let (qq, q_qd, q_qdd) = (model.jacobian(by_q, &q), model.jacobian(by_q, &qd), model.jacobian(by_q, &qdd));
-    let qd_qd = model.jacobian(by_qd, &qd);
-    Kernel::new(
+    let kernel = Kernel::new(
         format!("curvature{}", leg + 1),
         "Gradient in (q, q̇, q̈) and second derivatives of the sum of all outputs of an instant, each with its weight: \
          torques of the joints, then the balance (n), reaction (phi), and σ, σ̇, swing foot's height, platform's x, swing foot's \
          vertical velocity, platform's height (others).",
     )
-    .input("q", q)
-    .input("qd", qd)
-    .input("qdd", qdd)
+    .input("q", model.q(0))
+    .input("qd", model.q(1))
+    .input("qdd", model.q(2))
     .input("n", n)
     .input("phi", phi)
-    .input("others", others)
-    .vector("gradient", gradient, "∂/∂(q, q̇, q̈)")
-    .matrix("q_q", qq, "∂²/∂q∂q")
-    .matrix("q_qd", q_qd, "∂²/∂q∂q̇")
-    .matrix("q_qdd", q_qdd, "∂²/∂q∂q̈")
-    .matrix("qd_qd", qd_qd, "∂²/∂q̇∂q̇")
+    .input("others", others);
+    second_derivatives(model, kernel, &sum)
+}
+
+/// Adds to a kernel the gradient in (q, q̇, q̈) and the second derivatives of a sum that is linear in q̈, with factors
+/// that depend on q alone.
+pub fn second_derivatives(model: &Model, kernel: Kernel, sum: &Poly) -> Kernel {
+    let (q, qd, qdd) = (model.q(0), model.q(1), model.q(2));
+    let gradient: Vec<Poly> = q.iter().chain(&qd).chain(&qdd).map(|s| model.ring.derivative(sum, *s)).collect();
+    let (by_q, rest) = gradient.split_at(q.len());
+    let by_qd = &rest[..q.len()];
+    let (qq, q_qd, q_qdd) = (model.jacobian(by_q, &q), model.jacobian(by_q, &qd), model.jacobian(by_q, &qdd));
+    let qd_qd = model.jacobian(by_qd, &qd);
+    kernel
+        .vector("gradient", gradient, "∂/∂(q, q̇, q̈)")
+        .matrix("q_q", qq, "∂²/∂q∂q")
+        .matrix("q_qd", q_qd, "∂²/∂q∂q̇")
+        .matrix("q_qdd", q_qdd, "∂²/∂q∂q̈")
+        .matrix("qd_qd", qd_qd, "∂²/∂q̇∂q̇")
 }
 
 /// A touchdown's results, each with its weight, and the adjoint of its linear system.
@@ -180,8 +187,8 @@ fn touchdown(model: &mut Model, leg: usize) -> Kernel {
     let (qq, q_qd, q_plus) = (block(&q), block(&qd), block(&plus));
     Kernel::new(
         format!("touchdown_curvature{}", leg + 1),
-        "Second derivatives of a touchdown's results, weighted: q̇⁺ (xi), then impulse, leaving and landing velocity \
-         (outputs). With J = ∂q̇⁺/∂(q, q̇⁻), the Hessian in (q, q̇⁻) is [q_q, q_qd; ·, 0] + [q_plus; 0] J + its transpose.",
+        "Second derivatives of a touchdown's results, weighted: q̇⁺ (xi), then impulse, leaving and landing velocity, \
+         couple and pitch if there are any (outputs). With J = ∂q̇⁺/∂(q, q̇⁻), the Hessian in (q, q̇⁻) is [q_q, q_qd; ·, 0] + [q_plus; 0] J + its transpose.",
     )
     .input("q", q)
     .input("qd", qd)

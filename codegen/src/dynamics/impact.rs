@@ -6,8 +6,10 @@
 use super::kernel::Kernel;
 use super::kinematics::{Vec3, subtract};
 use super::model::{Model, Origin, scaled};
+use super::sharing;
 use super::solve::Factors;
 use crate::expr::{Poly, Var};
+use crate::spec::Rotation;
 use std::collections::BTreeMap;
 
 /// Momenta conjugate to motions about foot `landing`, of velocities with the platform at `pd`.
@@ -111,7 +113,8 @@ pub struct Touchdown {
     pub plus: Vec<Var>,
     /// Momenta before minus after: zero.
     pub residual: Vec<Poly>,
-    /// Impulse, vertical velocity of the leaving foot after, of the landing foot before.
+    /// Impulse, vertical velocity of the leaving foot after, of the landing foot before; where the platform rolls also how
+    /// real feet share (see `sharing::landing`).
     pub outputs: Vec<Poly>,
 }
 
@@ -136,6 +139,9 @@ impl Touchdown {
         outputs.push(model.ring.substitute(&leaving_rate[1], &rename));
         let landing = subtract(&model.foot(leg), &model.foot(stance));
         outputs.push(model.rate(&landing)[1].clone());
+        if model.mechanism.rotation == Rotation::Roll {
+            outputs.extend(sharing::landing(model, leg, &platform, &rename));
+        }
         Touchdown { inertia, before, plus, residual, outputs }
     }
 }
@@ -174,9 +180,11 @@ fn touchdown(model: &mut Model, leg: usize) -> Kernel {
         jacobian.push(row);
     }
     let mut values: Vec<Poly> = outputs.iter().map(|p| model.ring.substitute(p, &insert)).collect();
+    let mut couple = values.split_off(model.mechanism.positions() + 2);
+    let couple_rows = jacobian.split_off(jacobian.len() - couple.len());
     let landing_velocity = values.pop().unwrap_or_default();
     let leaving_velocity = values.pop().unwrap_or_default();
-    Kernel::new(
+    let kernel = Kernel::new(
         format!("touchdown{}", leg + 1),
         "Impact on this foot at the end of single support on the other (eq. 12), with its Jacobian in (q, q̇⁻): \
          rows are q̇⁺, the impulse, the leaving foot's vertical velocity after, the landing foot's before.",
@@ -187,7 +195,16 @@ fn touchdown(model: &mut Model, leg: usize) -> Kernel {
     .vector("impulse", values, "impulse on the landing foot, N·s")
     .scalar("leaving", leaving_velocity, "vertical velocity of the leaving foot after, m/s")
     .scalar("landing", landing_velocity, "vertical velocity of the landing foot before, m/s")
-    .matrix("jacobian", jacobian, "∂(q̇⁺, impulse, leaving, landing)/∂(q, q̇⁻)")
+    .matrix("jacobian", jacobian, "∂(q̇⁺, impulse, leaving, landing)/∂(q, q̇⁻)");
+    let Some(pitch) = couple.pop() else { return kernel };
+    kernel
+        .vector(
+            "couple",
+            couple,
+            "half the difference of the real feet's impulses times their distance, y and z, N·m·s",
+        )
+        .scalar("pitch", pitch, "change of the angular momentum about the platform's transverse axis, N·m·s")
+        .matrix("couple_jacobian", couple_rows, "∂(couple, pitch)/∂(q, q̇⁻)")
 }
 
 /// Both feet at rest after the impact (eq. 11). Singular where the feet cannot both be loaded

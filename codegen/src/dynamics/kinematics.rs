@@ -9,7 +9,7 @@ use crate::mechanism::{Body, Mechanism};
 use crate::spec::{Axis, Rotation};
 
 pub type Vec3 = [Poly; 3];
-type Mat3 = [[Poly; 3]; 3];
+pub type Mat3 = [[Poly; 3]; 3];
 
 /// The symbols of a mechanism: X = [p, q] with rates and accelerations.
 pub struct Coordinates {
@@ -25,6 +25,8 @@ pub struct Placement {
     pub com: Vec3,
     /// Angular velocity in the body's own axes.
     pub spin: Vec3,
+    /// From the body's own axes to the world's.
+    pub axes: Mat3,
 }
 
 /// Positions relative to the platform's mass centre.
@@ -121,7 +123,8 @@ impl Tree {
 }
 
 fn place(ring: &mut Ring, com: &Vec3, frame: &Frame, joint: &Vec3) -> Placement {
-    Placement { com: add(joint, &rotate(&frame.rotation(ring), com)), spin: frame.spin(ring) }
+    let axes = frame.rotation(ring);
+    Placement { com: add(joint, &rotate(&axes, com)), spin: frame.spin(ring), axes }
 }
 
 impl Frame {
@@ -193,7 +196,7 @@ fn product(a: &Mat3, b: &Mat3) -> Mat3 {
     })
 }
 
-fn rotate(m: &Mat3, v: &Vec3) -> Vec3 {
+pub fn rotate(m: &Mat3, v: &Vec3) -> Vec3 {
     [0, 1, 2].map(|i| {
         let mut sum = Poly::zero();
         for k in 0..3 {

@@ -14,6 +14,7 @@ mod lumps;
 mod model;
 mod quantities;
 mod sensitivity;
+mod sharing;
 mod solve;
 mod staging;
 mod stance;
@@ -27,6 +28,7 @@ pub use quantities::{BodyQuantities, Quantities};
 pub use whole::whole_kernels;
 
 use crate::mechanism::{Family, Mechanism};
+use crate::spec::Rotation;
 use lumps::Lumps;
 
 /// All kernels of a gait, in the order in which they are emitted.
@@ -43,6 +45,9 @@ fn derive(model: &mut Model) -> Vec<Kernel> {
         kernels.extend(staging::kernels(model, leg));
         kernels.extend(impact::kernels(model, leg));
         kernels.extend(curvature::kernels(model, leg));
+        if model.mechanism.rotation == Rotation::Roll {
+            kernels.extend(sharing::kernels(model, leg));
+        }
     }
     kernels.push(impact::both_feet(model));
     kernels

@@ -82,7 +82,7 @@ pub fn description(m: &Mechanism, key: &str, functions: &[Function], runtime: &T
             unactuated: #unactuated, polynomial_order: #order, early: [#(#early),*],
             limits: #runtime::Limits { friction: #friction, min_vertical_force: #force,
                 swing_clearance: #clearance, half_step_duration: #duration,
-                min_platform_height: #height },
+                min_platform_height: #height, real_legs: false },
             operations: &[#(#operations),*],
         }
     }

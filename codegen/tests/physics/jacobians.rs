@@ -162,7 +162,11 @@ pub fn of_curvature(d: &Derived, s: &State, draws: &mut Draws, leg: usize) {
     let [xi, outputs] = [2, 3].map(|input| weights("touchdown_curvature", input, draws));
     let all = [&xi[..], &outputs].concat();
     let w = &w[..2 * n];
-    let jacobian = |w: &[f64]| d.run(&name("touchdown"), &[&w[..n], &w[n..]]).get("jacobian").to_vec();
+    let jacobian = |w: &[f64]| {
+        let touchdown = d.run(&name("touchdown"), &[&w[..n], &w[n..]]);
+        let couple = if outputs.len() > positions + 2 { touchdown.get("couple_jacobian") } else { &[] };
+        [touchdown.get("jacobian"), couple].concat()
+    };
     let expected = differences(w, |w| transposed_product(&jacobian(w), &all));
     let curvature = d.run(&name("touchdown_curvature"), &[&s.q, &s.qd, &xi, &outputs]);
     let plus = jacobian(w);

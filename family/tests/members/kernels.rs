@@ -32,6 +32,8 @@ pub fn call(member: &dyn Parametric, name: &str, i: &[Vec<f64>], out: &mut [f64]
         "touchdown" => member.touchdown(leg, &i[0], &i[1], out),
         "curvature" => member.curvature(leg, &i[0], &i[1], &i[2], &i[3], &i[4], &i[5], out),
         "touchdown_curvature" => member.touchdown_curvature(leg, &i[0], &i[1], &i[2], &i[3], out),
+        "sharing" => member.sharing(leg, &i[0], &i[1], &i[2], out),
+        "sharing_curvature" => member.sharing_curvature(leg, &i[0], &i[1], &i[2], &i[3], out),
         "impact_both" => member.impact_both(&i[0], &i[1], out),
         "sensitivity" => member.sensitivity(leg, &i[0], &i[1], &i[2], &i[3], &i[4], &i[5], out),
         "terms_sensitivity" => member.terms_sensitivity(leg, &i[0], &i[1], &i[2], out),

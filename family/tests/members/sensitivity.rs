@@ -102,12 +102,15 @@ fn of_touchdowns() {
         let d = robot.description();
         let (n, np) = (d.orientations(), d.positions());
         let (q, qd) = (vector(n, 0.8, rng), vector(n, 3.0, rng));
-        let weights = vector(n + np + 2, 1.0, rng);
+        let shared = if d.lateral { 3 } else { 0 };
+        let weights = vector(n + np + 2 + shared, 1.0, rng);
         let (xi, outputs) = weights.split_at(n);
         let by_lump = filled(robot.lumps().len(), |o| robot.touchdown_sensitivity(leg, &q, &qd, xi, outputs, o));
         let value = |m: &dyn Parametric| {
             let rows = n + np + 2;
-            dot(&weights, &filled(rows + rows * 2 * n, |o| m.touchdown(leg, &q, &qd, o))[..rows])
+            let jacobian = rows * 2 * n;
+            let results = filled(rows + jacobian + shared, |o| m.touchdown(leg, &q, &qd, o));
+            dot(&weights[..rows], &results[..rows]) + dot(&weights[rows..], &results[rows + jacobian..])
         };
         assert_close("touchdown", &robot.pull_back(&by_lump), &differences(family, robot, value), TOLERANCE);
     });
