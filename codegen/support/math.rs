@@ -51,9 +51,10 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
     let z = r * r;
 
     // By Estrin's scheme, whose products do not wait for each other.
+    let ([s0, s1, s2, s3, s4, s5], [c0, c1, c2, c3, c4, c5]) = (SIN, COS);
     let square = z * z;
-    let s = (SIN[0] + SIN[1] * z) + square * ((SIN[2] + SIN[3] * z) + square * (SIN[4] + SIN[5] * z));
-    let c = (COS[0] + COS[1] * z) + square * ((COS[2] + COS[3] * z) + square * (COS[4] + COS[5] * z));
+    let s = (s0 + s1 * z) + square * ((s2 + s3 * z) + square * (s4 + s5 * z));
+    let c = (c0 + c1 * z) + square * ((c2 + c3 * z) + square * (c4 + c5 * z));
     let half = 0.5 * z;
     let one = 1.0 - half;
     let sin = r + (r * z * s + tail * one);
