@@ -131,3 +131,15 @@ fn what_cannot_be_checked_is_said_to_be_so() {
     assert!(code == 4 && words.contains("no motion"), "{words}");
     assert_eq!(entries(&statements, "not-checked").len(), statements.len());
 }
+
+#[test]
+fn a_file_that_cannot_be_read_does_not_hide_the_others() {
+    let good = path("good.json");
+    std::fs::write(&good, TROT.to_string()).unwrap();
+    let out = piaffe(&["verify", "nowhere.json", good.to_str().unwrap(), "--json", "-"]);
+    assert_eq!(out.status.code(), Some(1));
+    let audits: Value = serde_json::from_slice(&out.stdout).unwrap();
+    assert!(audits[0]["file"] == good.to_str().unwrap() && audits[0]["confirmed"] == true, "{audits}");
+    let words = String::from_utf8(out.stderr).unwrap();
+    assert!(words.contains("nowhere.json") && words.contains("1 of 2 results"), "{words}");
+}

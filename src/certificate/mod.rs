@@ -184,15 +184,16 @@ fn at_ends(
     let units = Units::new(description);
     let (numbers, leg) = (Numbers::new(description), stance_leg(description, index));
     let mut instants = Instants::new(description, numbers, half_step, leg);
-    let mut states = [State::new(description), State::new(description)];
-    let times = [Ball::zero(), half_step.duration];
-    for (k, (state, beta)) in states.iter_mut().zip([start, end]).enumerate() {
-        let share = k as f64;
-        let defined = instants.at(times[k], beta, state).is_some();
-        let steep = steepness(instants.numbers(), state, half_step.duration, k == 1) / units.leg.into();
-        proof.note(Constraint::Clearance, if defined { &steep } else { &Ball::UNKNOWN }, [share, share]);
-    }
-    let [first, last] = states;
+    let mut at = |share: f64, beta: [Ball; 2]| {
+        let mut state = State::new(description);
+        if instants.at(half_step.duration.scale(share), beta, &mut state).is_none() {
+            (state.platform.x, state.swing.y, state.swing_velocity.y) = (Ball::UNKNOWN, Ball::UNKNOWN, Ball::UNKNOWN);
+        }
+        let steep = steepness(instants.numbers(), &state, half_step.duration, share == 1.0) / units.leg.into();
+        proof.note(Constraint::Clearance, &steep, [share, share]);
+        state
+    };
+    let [first, last] = [at(0.0, start), at(1.0, end)];
     let [shortest, longest] = description.limits.half_step_duration.map(Ball::from);
     for (constraint, margin) in [
         (Constraint::Touchdown, -last.swing.y.abs() / units.leg.into()),

@@ -1,32 +1,55 @@
 //! `piaffe verify`: what results state, derived anew.
 
 use super::{input, output};
+use anyhow::bail;
 use piaffe::audit::{Audit, Statement, Verdict};
 use piaffe::gaits::GAITS;
 use piaffe::result::GaitResult;
+use serde::Serialize;
 use serde_json::Value;
 use std::io::Write;
 
 /// Differences of a statement that are printed.
 const SHOWN: usize = 3;
 
-/// Checks results; true if all that they state about their motions was confirmed.
+/// What is written of a file.
+#[derive(Serialize)]
+struct Entry<'a> {
+    file: &'a str,
+    confirmed: bool,
+    #[serde(flatten)]
+    audit: Audit,
+}
+
+/// Checks results; true if all that they state about their motions was confirmed. One that cannot be read does not keep
+/// the others from being checked.
 pub fn run(files: &[String], json: Option<&str>) -> anyhow::Result<bool> {
-    let mut audits = Vec::new();
+    let mut entries = Vec::new();
     for file in files {
-        let text = input::read_text(file)?;
-        let result: GaitResult = input::parse_json(file, &text)?;
-        let stated: Value = input::parse_json(file, &text)?;
-        let audit = Audit::new(&stated, &result, GAITS);
-        if json != Some("-") {
-            output::quiet_when_closed(print(file, &audit))?;
+        match audit(file) {
+            Ok(audit) => {
+                if json != Some("-") {
+                    output::quiet_when_closed(print(file, &audit))?;
+                }
+                entries.push(Entry { file, confirmed: audit.is_confirmed(), audit });
+            }
+            Err(error) => eprintln!("error: {error:#}"),
         }
-        audits.push(audit);
     }
     if let Some(target) = json {
-        output::json_to(target, &audits)?;
+        output::json_to(target, &entries)?;
     }
-    Ok(audits.iter().all(Audit::is_confirmed))
+    if entries.len() < files.len() {
+        bail!("{} of {} results could not be read", files.len() - entries.len(), files.len());
+    }
+    Ok(entries.iter().all(|entry| entry.confirmed))
+}
+
+fn audit(file: &str) -> anyhow::Result<Audit> {
+    let text = input::read_text(file)?;
+    let result: GaitResult = input::parse_json(file, &text)?;
+    let stated: Value = input::parse_json(file, &text)?;
+    Ok(Audit::new(&stated, &result, GAITS))
 }
 
 fn print(file: &str, audit: &Audit) -> std::io::Result<()> {
