@@ -99,6 +99,10 @@ fn what_was_changed_is_named() {
     }
     let (statements, words) = changed("/variables/0/q_interior", json!([[0.1]]));
     assert!(entries(&statements, "confirmed").is_empty() && words.contains("has 1 numbers"), "{words}");
+    for interior in [json!([]), json!([[0.1, 0.2, 0.3], [0.1, 0.2, 0.3]])] {
+        let (statements, words) = changed("/variables/0/q_interior", interior);
+        assert!(entries(&statements, "confirmed").is_empty() && words.contains("`q_interior`"), "{words}");
+    }
     // Another question: the motion is no optimum for it.
     let (statements, words) = changed("/criterion", json!("torque"));
     assert!(entries(&statements, "not-confirmed").iter().any(|r| r == "status"), "{words}");

@@ -56,16 +56,18 @@ fn print(file: &str, audit: &Audit) -> std::io::Result<()> {
     let mut out = output::person();
     let verdict = if audit.is_confirmed() { "confirmed" } else { "not confirmed" };
     writeln!(out, "{file}: {}, {verdict}", audit.name)?;
-    for statement in &audit.statements {
-        let Statement { entry, verdict, reason, differences } = statement;
+    // What has one reason is said once.
+    for alike in audit.statements.chunk_by(|a, b| a.reason.is_some() && a.reason == b.reason) {
+        let names: Vec<&str> = alike.iter().map(|s| s.entry.as_str()).collect();
+        let Some(Statement { verdict, reason, differences, .. }) = alike.first() else { continue };
         let word = match verdict {
             Verdict::Confirmed => "confirmed",
             Verdict::NotConfirmed => "NOT CONFIRMED",
             Verdict::NotChecked => "not checked",
         };
         match reason {
-            Some(reason) => writeln!(out, "  {entry:<18} {word}: {reason}")?,
-            None => writeln!(out, "  {entry:<18} {word}")?,
+            Some(reason) => writeln!(out, "  {}\n    {word}: {reason}", names.join(", "))?,
+            None => writeln!(out, "  {:<18} {word}", names.join(", "))?,
         }
         for d in differences.iter().take(SHOWN) {
             writeln!(out, "    {}: stated {}, found {}", d.place, d.stated, d.found)?;

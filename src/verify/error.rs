@@ -17,6 +17,11 @@ pub enum VerifyError {
         "half step {half_step}: `{list}` has {found} numbers, one for each of {expected} prescribed coordinates is needed"
     )]
     Length { half_step: usize, list: String, expected: usize, found: usize },
+    #[error(
+        "half step {half_step}: polynomials of order {order} need {expected} list(s) in `q_interior`, not {found}",
+        order = .expected + 3
+    )]
+    Interior { half_step: usize, expected: usize, found: usize },
     #[error("half step {half_step}: `{list}` contains a number that is not finite")]
     NotFinite { half_step: usize, list: String },
     #[error("half step {half_step} takes {duration} s: its duration must be positive and finite")]
@@ -61,6 +66,10 @@ pub(crate) fn check(description: &Description, motion: &Motion, grid: usize) -> 
     }
     for (i, half_step) in motion.half_steps.iter().enumerate() {
         check_half_step(half_step, description.prescribed(), i + 1)?;
+        let (expected, found) = (description.polynomial_order - 3, half_step.q_interior.len());
+        if expected != found {
+            return Err(VerifyError::Interior { half_step: i + 1, expected, found });
+        }
     }
     Ok(())
 }
