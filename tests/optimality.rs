@@ -4,11 +4,12 @@ use piaffe::altered::Altered;
 use piaffe::gaits::GAITS;
 use piaffe::model::Gait;
 use piaffe::motion::{Criterion, Motion};
-use piaffe::optimality::{Optimality, optimality};
+use piaffe::optimality::{Linearized, Optimality, optimality};
 use piaffe::result::KKT_RESIDUAL;
 use piaffe::search::local::{Local, Task};
 use piaffe::search::multi_start::{Settings, search};
 use piaffe::sqp::Control;
+use piaffe::walk::Walk;
 
 fn optimum(gait: &dyn Gait, criterion: Criterion, speed: f64) -> Local {
     search(gait, criterion, speed, &Settings { starts: 2, seed: 1 }, &|_| {}).optima[0].local.clone()
@@ -42,6 +43,20 @@ fn a_motion_that_is_feasible_but_no_optimum_has_a_residual() {
     let mut motion = local.motion;
     motion.half_steps[0].betad_final += 1e-3;
     assert!(of(Criterion::Torque, &motion).violation > 1e-5);
+}
+
+#[test]
+fn a_limit_that_just_touches_is_named_but_has_no_price() {
+    let trot = GAITS.iter().copied().find(|g| g.description().key == "trot").unwrap();
+    let motion = optimum(trot, Criterion::Energy, 0.6).motion;
+    let walk = Walk::even(trot, &motion, 2000).unwrap();
+    let lowest = walk.moments.iter().map(|m| m.platform[0][1]).fold(f64::INFINITY, f64::min);
+    let touching = |by: f64| {
+        let gait = Altered::new(trot, |d| d.limits.min_platform_height = lowest - by).unwrap();
+        Linearized::new(&gait, Criterion::Energy, 0.6, &motion).unwrap().unpriced()
+    };
+    assert_eq!(touching(0.0), ["platform height (half step 1)"]);
+    assert!(touching(1e-4).is_empty());
 }
 
 #[test]

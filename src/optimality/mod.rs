@@ -4,7 +4,7 @@
 //! as in the search. But nothing of the search is taken over: the multipliers are fitted to the gradients ([`multipliers`]).
 //! A multiplier is a price: what the criterion would gain per unit by which its limit is loosened.
 
-use crate::cycle::{Cycle, Label};
+use crate::cycle::{Cycle, Label, Place};
 use crate::model::Gait;
 use crate::motion::{Criterion, Motion};
 use crate::search::refine::{dips, probe};
@@ -13,6 +13,10 @@ use serde::{Deserialize, Serialize};
 
 /// Prices below this share of the largest are left out.
 const NEGLIGIBLE: f64 = 1e-9;
+/// A limit nearer than this (scaled) is active.
+const ACTIVE: f64 = 1e-6;
+/// A price below this share of the criterion is none.
+const FREE: f64 = 1e-6;
 
 /// The first-order conditions at a motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -124,5 +128,26 @@ impl<'a> Linearized<'a> {
         let scale = cycle.scale();
         let multipliers = multipliers(&mut cycle, &theta, scale)?;
         Ok(Linearized { cycle, theta, multipliers })
+    }
+    /// Names of limits that are active but have no price: the slightest change may make them hold the optimum, or not.
+    pub fn unpriced(&self) -> Vec<String> {
+        let (cycle, m) = (&self.cycle, &self.multipliers);
+        let least = FREE * m.values.objective.abs();
+        // Of neighbouring rows one has the price of all.
+        let kind = |i: usize| match cycle.place(i) {
+            Place::Instant { phase, constraint, .. } => (phase, constraint, false),
+            Place::Impact { phase, constraint } => (phase, constraint, true),
+        };
+        let priced: Vec<_> = (0..m.inequalities.len()).filter(|i| m.inequalities[*i] > least).map(kind).collect();
+        let active = (0..m.inequalities.len()).filter(|i| m.values.inequalities[*i] < ACTIVE);
+        let mut names = Vec::new();
+        for i in active.filter(|i| !priced.contains(&kind(*i))) {
+            let Label { name, half_step, .. } = cycle.label(i);
+            let name = format!("{name} (half step {half_step})");
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        names
     }
 }

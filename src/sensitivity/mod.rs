@@ -7,17 +7,11 @@
 mod lagrangian;
 
 use crate::constraints::sharing::applies;
-use crate::cycle::Place;
 use crate::model::Gait;
 use crate::motion::{Criterion, Motion};
 use crate::optimality::Linearized;
 use lagrangian::{LANES, Slopes};
 use serde::{Deserialize, Serialize};
-
-/// A constraint nearer to zero than this (scaled) is active.
-const ACTIVE: f64 = 1e-6;
-/// A price below this share of the criterion is none.
-const FREE: f64 = 1e-6;
 
 /// Slopes of the least criterion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -76,27 +70,5 @@ pub fn sensitivities(gait: &dyn Gait, criterion: Criterion, speed: f64, motion: 
         list.extend(chunk.iter().zip(found).map(|(l, slope)| entry(l.name, l.unit, l.value, slope)));
     }
     list.sort_by(|a, b| b.elasticity.abs().total_cmp(&a.elasticity.abs()));
-    Some(Sensitivities { slopes: list, one_sided: one_sided(&linearized) })
-}
-
-/// Active constraints of which no row nearby has a price.
-fn one_sided(linearized: &Linearized) -> Vec<String> {
-    let (cycle, m) = (&linearized.cycle, &linearized.multipliers);
-    let least = FREE * m.values.objective.abs();
-    let kind = |i: usize| match cycle.place(i) {
-        Place::Instant { phase, constraint, .. } => (phase, constraint, false),
-        Place::Impact { phase, constraint } => (phase, constraint, true),
-    };
-    let priced: Vec<_> = (0..m.inequalities.len()).filter(|i| m.inequalities[*i] > least).map(kind).collect();
-    let mut names = Vec::new();
-    for i in (0..m.inequalities.len()).filter(|i| m.values.inequalities[*i] < ACTIVE) {
-        if !priced.contains(&kind(i)) {
-            let label = cycle.label(i);
-            let name = format!("{} (half step {})", label.name, label.half_step);
-            if !names.contains(&name) {
-                names.push(name);
-            }
-        }
-    }
-    names
+    Some(Sensitivities { slopes: list, one_sided: linearized.unpriced() })
 }
