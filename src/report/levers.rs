@@ -14,7 +14,7 @@ pub fn section(r: &GaitResult) -> Markup {
     html! {
         div.receipt {
             h3 { "What to change" }
-            p { "How the least " (r.criterion.name()) " moves with every number of the specification, as the motion adapts. The elasticity is in percent of the criterion per percent of the number; a negative one says that more is better." }
+            p { "How the least " (r.criterion.name()) " moves with every number of the specification, as the motion adapts. The elasticity is in percent of the criterion per percent of the number; where it is negative, a larger number, farther from zero, is better." }
             div.scroll { table {
                 thead { tr { th { "number" } th.n { "value" } th.n { "elasticity" } th.n { "slope" } } }
                 tbody { @for s in effective.iter().take(SHOWN) { (row(s, unit)) } }
@@ -33,7 +33,24 @@ pub fn section(r: &GaitResult) -> Markup {
 fn row(s: &Sensitivity, unit: &str) -> Markup {
     let per = if s.unit.is_empty() { String::new() } else { format!(" per {}", s.unit) };
     html! {
-        tr { td { (s.parameter) } td.n { (format!("{:.4}", s.value)) " " (s.unit) }
-            td.n { b { (format!("{:+.3}", s.elasticity)) } } td.n { (format!("{:+.4}", s.slope)) " " (unit) (per) } }
+        tr { td { (s.parameter) } td.n { (significant(s.value)) " " (s.unit) }
+            td.n { b { (significant(s.elasticity)) } } td.n { (significant(s.slope)) " " (unit) (per) } }
+    }
+}
+
+/// Four significant digits, with the minus sign of a reader.
+fn significant(value: f64) -> String {
+    let digits = if value == 0.0 { 0.0 } else { 3.0 - value.abs().log10().floor() };
+    format!("{value:.*}", digits.clamp(0.0, 9.0) as usize).replace('-', "−")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn four_digits_of_anything() {
+        let written = [6600.0, 0.139, -0.261_84, 0.0, 12_345.6, 0.000_412_34].map(significant);
+        assert_eq!(written, ["6600", "0.1390", "−0.2618", "0", "12346", "0.0004123"]);
     }
 }

@@ -12,6 +12,7 @@ mod footfall;
 mod ink;
 mod joints;
 mod levers;
+mod momentum;
 mod page;
 mod pdf;
 mod player;
@@ -141,5 +142,6 @@ pub fn figures(s: &Subject) -> Vec<Figure> {
     figures.push(joints::speeds(s));
     figures.push(power::power(s));
     figures.push(power::integral(s));
+    figures.push(momentum::momentum(s));
     figures
 }
