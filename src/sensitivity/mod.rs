@@ -2,7 +2,7 @@
 //!
 //! At an optimum the slope of the least criterion C* in a parameter p is that of the Lagrangian, with the variables Θ and the
 //! multipliers as they are (envelope theorem): dC*/dp = ∂L/∂p. The multipliers are [`optimality`](crate::optimality)'s;
-//! ∂L/∂p comes from the verifier's physics in dual numbers, with β integrated anew ([`lagrangian`]).
+//! ∂L/∂p comes from the verifier's physics in dual numbers, with β integrated anew (`lagrangian.rs`).
 
 mod lagrangian;
 

@@ -20,7 +20,7 @@ pub struct Numbers<T = f64> {
     pub min_platform_height: T,
 }
 
-/// See [`Body`](crate::model::Body).
+/// See [`Body`].
 #[derive(Clone, Copy, Debug)]
 pub struct Rigid<T> {
     pub offset: Vec3<T>,
