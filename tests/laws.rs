@@ -20,10 +20,11 @@ fn sources(folder: &str) -> Vec<(PathBuf, String)> {
     found
 }
 
-/// Lines of code that contain `pattern`, comments aside.
+/// Lines of code that contain `pattern`, comments and unit tests aside.
 fn lines_with<'a>(sources: &'a [(PathBuf, String)], pattern: &'a str) -> impl Iterator<Item = String> + 'a {
     sources.iter().flat_map(move |(path, text)| {
-        let code = text.lines().enumerate().filter(|(_, l)| !l.trim_start().starts_with("//"));
+        let code = text.lines().take_while(|l| *l != "#[cfg(test)]").enumerate();
+        let code = code.filter(|(_, l)| !l.trim_start().starts_with("//"));
         code.filter(move |(_, l)| l.contains(pattern)).map(|(n, l)| format!("{}:{}: {l}", path.display(), n + 1))
     })
 }
