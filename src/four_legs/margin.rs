@@ -4,8 +4,9 @@
 //! more room, because their weighted sum has not.
 
 use super::limits::{Limit, Room};
+use crate::sqp::qp::interior::settings;
 use clarabel::algebra::CscMatrix;
-use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
+use clarabel::solver::{DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use nalgebra::DVector;
 
 /// Room that is given up for a share nearer to the equal one.
@@ -66,16 +67,7 @@ fn maximize(rooms: &[Room], squeezes: usize) -> Option<Best> {
     q.push(-1.0);
     let a = CscMatrix::from(&rows);
     let p = CscMatrix::zeros((squeezes + 1, squeezes + 1));
-    let settings = DefaultSettings {
-        verbose: false,
-        presolve_enable: false,
-        max_threads: 1,
-        tol_gap_abs: 1e-10,
-        tol_gap_rel: 1e-10,
-        tol_feas: 1e-10,
-        ..DefaultSettings::default()
-    };
-    let mut solver = DefaultSolver::new(&p, &q, &a, &b, &cones, settings).ok()?;
+    let mut solver = DefaultSolver::new(&p, &q, &a, &b, &cones, settings()).ok()?;
     solver.solve();
     if !matches!(solver.solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved) {
         return None;

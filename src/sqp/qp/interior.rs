@@ -10,6 +10,19 @@ use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, S
 /// Residual of the optimality conditions at which the answer stands.
 const ACCEPT: f64 = 1e-6;
 
+/// Silent, on one thread, and as exact as double precision reasonably allows.
+pub fn settings() -> DefaultSettings<f64> {
+    DefaultSettings {
+        verbose: false,
+        presolve_enable: false,
+        max_threads: 1,
+        tol_gap_abs: 1e-10,
+        tol_gap_rel: 1e-10,
+        tol_feas: 1e-10,
+        ..DefaultSettings::default()
+    }
+}
+
 /// Solves `qp`.
 ///
 /// # Errors
@@ -75,16 +88,7 @@ fn solve_capped(qp: &Quadratic, hard: bool) -> Result<Step, Failure> {
     let p = sparse(width, &upper_triangle);
     let a = sparse(b.len(), &columns);
     let cones = [SupportedConeT::ZeroConeT(equalities), SupportedConeT::NonnegativeConeT(b.len() - equalities)];
-    let settings = DefaultSettings {
-        verbose: false,
-        presolve_enable: false,
-        max_threads: 1,
-        tol_gap_abs: 1e-10,
-        tol_gap_rel: 1e-10,
-        tol_feas: 1e-10,
-        ..DefaultSettings::default()
-    };
-    let mut solver = DefaultSolver::new(&p, &cost, &a, &b, &cones, settings).map_err(|_| Failure::Inaccurate)?;
+    let mut solver = DefaultSolver::new(&p, &cost, &a, &b, &cones, settings()).map_err(|_| Failure::Inaccurate)?;
     solver.solve();
     match solver.solution.status {
         SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => return Err(Failure::Inconsistent),
