@@ -167,10 +167,36 @@ fn quiet_runs_say_nothing_but_what_was_asked_for() {
 
 #[test]
 fn a_reader_that_has_seen_enough_is_no_failure() {
-    let run =
-        format!("{} optimize trot --speed 0.6 --starts 1 --json /dev/null | head -n 1", env!("CARGO_BIN_EXE_piaffe"));
+    let run = format!("{} optimize trot --speed 0.6 --starts 1 | head -n 1", env!("CARGO_BIN_EXE_piaffe"));
     let out = Command::new("sh").args(["-c", &run]).output().unwrap();
     assert!(text(&out.stdout).starts_with("trot") && out.stderr.is_empty(), "{}", text(&out.stderr));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_or_a_link_is_written_to_and_not_replaced() {
+    use std::os::unix::fs::FileTypeExt;
+    let folder = tempfile::tempdir().unwrap();
+    let [pipe, link, file] = ["pipe", "link", "file"].map(|name| folder.path().join(name));
+    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    std::fs::write(&file, "old").unwrap();
+    std::os::unix::fs::symlink(&file, &link).unwrap();
+    let optimize = |to: &std::path::Path| {
+        piaffe(&["optimize", "trot", "--speed", "0.6", "--starts", "1", "--json", to.to_str().unwrap()], "")
+    };
+    let cost = |json: &[u8]| serde_json::from_slice::<Value>(json).unwrap()["cost"].is_f64();
+
+    let reader = std::thread::spawn({
+        let pipe = pipe.clone();
+        move || std::fs::read(pipe).unwrap()
+    });
+    assert!(optimize(&pipe).status.success());
+    assert!(pipe.symlink_metadata().unwrap().file_type().is_fifo(), "the pipe was replaced");
+    assert!(cost(&reader.join().unwrap()));
+
+    assert!(optimize(&link).status.success());
+    assert!(link.symlink_metadata().unwrap().is_symlink(), "the link was replaced");
+    assert!(cost(&std::fs::read(&file).unwrap()));
 }
 
 #[test]

@@ -34,8 +34,15 @@ macro_rules! say {
 }
 pub(super) use say;
 
-/// Writes a file; a reader never sees half of it.
+/// Writes a file; a reader never sees half of it. What stands there and is no file (a device, a pipe) is written to, not
+/// replaced; nor is a link.
 pub fn write_file(path: &Path, contents: &[u8]) -> anyhow::Result<()> {
+    let there = path.canonicalize().ok();
+    let path = there.as_deref().unwrap_or(path);
+    if path.metadata().is_ok_and(|m| !m.is_file() && !m.is_dir()) {
+        let written = std::fs::OpenOptions::new().write(true).open(path).and_then(|mut f| f.write_all(contents));
+        return quiet_when_closed(written).with_context(|| format!("cannot write {}", path.display()));
+    }
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut file =
         tempfile::NamedTempFile::new_in(folder).with_context(|| format!("cannot write into {}", folder.display()))?;
