@@ -1,45 +1,27 @@
 //! Exported files in the hands of others: MuJoCo and numpy where a Python has them (`PIAFFE_PYTHON` names it).
 
+#[path = "export/program.rs"]
+mod program;
 #[path = "export/python.rs"]
 mod python;
 
 use piaffe::gaits::GAITS;
-use piaffe::model::{Description, Gait, Rotation};
-use piaffe::motion::{Criterion, Motion};
+use piaffe::model::{Description, Rotation};
+use piaffe::motion::Criterion;
 use piaffe::result::GaitResult;
-use piaffe::search::multi_start::{Settings, search};
 use piaffe::walk::{Moment, Walk};
+use program::{optimum, piaffe};
 use python::{ask, python};
 use serde_json::{Value, json};
-use std::io::Write;
-use std::process::{Command, Stdio};
-
-/// An optimum of a gait, as the file that `piaffe optimize` writes.
-fn optimum(gait: &'static dyn Gait) -> (GaitResult, Motion) {
-    let settings = Settings { starts: 1, ..Settings::default() };
-    let found = search(gait, Criterion::Torque, 0.6, &settings, &|_| {});
-    let result = GaitResult::new(gait, Criterion::Torque, 0.6, &found, settings.seed, || 0.0);
-    let motion = result.motion().unwrap();
-    (result, motion)
-}
 
 fn export(result: &GaitResult, arguments: &[&str]) -> Vec<u8> {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_piaffe"))
-        .args([&["export", "-"], arguments].concat())
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap();
-    child.stdin.take().unwrap().write_all(&serde_json::to_vec(result).unwrap()).unwrap();
-    let out = child.wait_with_output().unwrap();
-    assert!(out.status.success());
-    out.stdout
+    piaffe(result, &[&["export", "-"], arguments].concat())
 }
 
 #[test]
 fn a_table_has_the_numbers_of_the_walk() {
     for gait in GAITS {
-        let (result, motion) = optimum(*gait);
+        let (result, motion) = optimum(*gait, Criterion::Torque);
         let text = String::from_utf8(export(&result, &["--format", "csv", "--rate", "200"])).unwrap();
         let mut lines = text.lines();
         let names: Vec<&str> = lines.next().unwrap().split(',').collect();
@@ -64,7 +46,7 @@ fn a_table_has_the_numbers_of_the_walk() {
 #[test]
 fn a_controller_that_follows_the_polynomials_does_the_walk() {
     for gait in GAITS {
-        let (result, motion) = optimum(*gait);
+        let (result, motion) = optimum(*gait, Criterion::Torque);
         let program: Value = serde_json::from_slice(&export(&result, &["--format", "json"])).unwrap();
         let walk = Walk::even(*gait, &motion, 20).unwrap();
         let d = gait.description();
@@ -156,7 +138,7 @@ fn mujoco_agrees_about_masses_feet_and_inverse_dynamics_of_the_real_robot() {
     let folder = tempfile::tempdir().unwrap();
     for gait in GAITS {
         let d = gait.description();
-        let (result, motion) = optimum(*gait);
+        let (result, motion) = optimum(*gait, Criterion::Torque);
         let files = ["mjcf", "npz", "urdf"].map(|format| {
             let path = folder.path().join(format!("{}.{}", d.gait, if format == "mjcf" { "xml" } else { format }));
             std::fs::write(&path, export(&result, &["--format", format, "--rate", "500"])).unwrap();

@@ -1,5 +1,7 @@
 //! The real legs behind the virtual ones: kinematics, equal shares, and the best shares against all others.
 
+#[path = "export/program.rs"]
+mod program;
 #[path = "export/python.rs"]
 mod python;
 
@@ -8,38 +10,13 @@ use piaffe::four_legs::{Equations, Instant, Legs, Lift, Limits, RealLegs, Shares
 use piaffe::gaits::GAITS;
 use piaffe::model::Gait;
 use piaffe::motion::{Criterion, Motion};
-use piaffe::result::GaitResult;
-use piaffe::search::multi_start::{Settings, search};
 use piaffe::walk::{Moment, Walk};
+use program::{optimum, piaffe};
 use python::{ask, python};
 use serde_json::{Value, json};
-use std::io::Write;
-use std::process::{Command, Stdio};
-
-fn optimum(gait: &dyn Gait, criterion: Criterion) -> (GaitResult, Motion) {
-    let settings = Settings { starts: 1, ..Settings::default() };
-    let found = search(gait, criterion, 0.6, &settings, &|_| {});
-    let result = GaitResult::new(gait, criterion, 0.6, &found, settings.seed, || 0.0);
-    let motion = result.motion().unwrap();
-    (result, motion)
-}
 
 fn gait(key: &str) -> &'static dyn Gait {
     *GAITS.iter().find(|g| g.description().key == key).unwrap()
-}
-
-/// What the command says about a result.
-fn piaffe(result: &GaitResult, arguments: &[&str]) -> String {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_piaffe"))
-        .args(arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap();
-    child.stdin.take().unwrap().write_all(&serde_json::to_vec(result).unwrap()).unwrap();
-    let out = child.wait_with_output().unwrap();
-    assert!(out.status.success());
-    String::from_utf8(out.stdout).unwrap()
 }
 
 /// Every moment of a gait's optimum with what is made of it.
@@ -238,7 +215,8 @@ fn what_no_reactions_balance_is_said() {
 fn the_command_writes_what_the_library_lifts() {
     let gait = gait("amble");
     let (result, motion) = optimum(gait, Criterion::Torque);
-    let run = |format: &str| piaffe(&result, &["lift", "-", "--rate", "200", "--format", format]);
+    let run =
+        |format: &str| String::from_utf8(piaffe(&result, &["lift", "-", "--rate", "200", "--format", format])).unwrap();
     let lift = Lift::at_rate(gait, &motion, 200.0).unwrap();
     let json: Value = serde_json::from_str(&run("json")).unwrap();
     let text = run("csv");
@@ -269,7 +247,7 @@ fn replayed(python: &str, key: &str, change: impl Fn(&mut [Value])) -> Value {
     let [model, lift] = ["robot.xml", "lift.json"].map(|file| folder.path().join(file));
     std::fs::write(&model, piaffe(&result, &["export", "-", "--format", "mjcf"])).unwrap();
     let mut lifted: Value =
-        serde_json::from_str(&piaffe(&result, &["--quiet", "lift", "-", "--format", "json", "--rate", "2000"]))
+        serde_json::from_slice(&piaffe(&result, &["--quiet", "lift", "-", "--format", "json", "--rate", "2000"]))
             .unwrap();
     for moment in lifted["moments"].as_array_mut().unwrap() {
         change(moment["torque"].as_array_mut().unwrap());

@@ -5,6 +5,7 @@ use super::{first_robot, output, report};
 use piaffe::motion::Criterion;
 use piaffe::report::Extremes;
 use piaffe::result::GaitResult;
+use piaffe::search::local::Task;
 use piaffe::search::multi_start::Settings;
 use std::io::Write;
 use std::path::Path;
@@ -56,7 +57,7 @@ pub fn run(folder: &Path) -> anyhow::Result<bool> {
         for gait in &gaits {
             let name = gait.description().gait;
             bar.set_message(format!("{name}, {}", criterion.name()));
-            let mut result = solve(*gait, criterion, SPEED, &settings, &bar);
+            let mut result = solve(Task { gait: *gait, criterion, speed: SPEED }, &[], &settings, &bar);
             result.examine(*gait);
             output::write_json(&folder.join(format!("{name}-{}.json", criterion.name())), &result)?;
             bar.suspend(|| output::quiet_when_closed(row(&result)))?;
