@@ -64,7 +64,7 @@ pub fn description(m: &Mechanism, key: &str, functions: &[Function], runtime: &T
     let operations = functions.iter().map(|f| {
         let (name, o) = (&f.kernel.name, f.program.operations());
         let (flops, divisions, sincos) = (o.flops, o.divisions, o.sincos);
-        let (derived, bytes) = (f.derived.flops, f.bytes());
+        let (derived, bytes) = (f.derived.flops, f.source.len());
         quote!(#runtime::Operations { kernel: #name, flops: #flops, divisions: #divisions, sincos: #sincos,
             derived: #derived, bytes: #bytes })
     });

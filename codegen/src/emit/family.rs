@@ -21,7 +21,8 @@ pub fn family_source(family: &Family, robot: &str, latex: &str, runtime: &str, o
     let [numbers, lumps, jacobian] = kernels.parameters.each_ref().map(|k| Function::new(&model.ring, k));
     let count = |f: &Function| Literal::usize_unsuffixed(f.kernel.outputs[0].values.len());
     let (lump_count, parameter_count) = (count(&lumps), Literal::usize_unsuffixed(family.parameters.len()));
-    let items = [items(&gait), items(&sensitivity), numbers.source(), lumps.source(), jacobian.source()];
+    let items =
+        [items(&gait), items(&sensitivity), numbers.source, lumps.source.clone(), jacobian.source.clone()].concat();
     let runtime = path(runtime)?;
     let mechanism = &family.mechanism;
     let name = ident(&type_name(&mechanism.gait));
@@ -29,9 +30,7 @@ pub fn family_source(family: &Family, robot: &str, latex: &str, runtime: &str, o
     let description = description(mechanism, &key(robot, &mechanism.gait), &gait, &runtime);
     let of_gait = methods(&gait);
     let of_member = methods(&[sensitivity, vec![jacobian]].concat());
-    let file = quote! {
-        use super::math;
-        #(#items)*
+    let member = quote! {
         #[doc = #doc]
         #[derive(Clone, Debug)]
         pub struct #name {
@@ -59,7 +58,7 @@ pub fn family_source(family: &Family, robot: &str, latex: &str, runtime: &str, o
             #of_member
         }
     };
-    written(file, origin)
+    written(&items, member, origin)
 }
 
 /// Name of the generated file of a gait.

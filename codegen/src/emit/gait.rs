@@ -33,25 +33,20 @@ pub fn gait_source(
         }
         None => TokenStream::new(),
     };
-    let file = quote! {
-        use super::math;
-        #items
-        #gait
-    };
-    written(file, origin)
+    written(&items, gait, origin)
 }
 
 /// The functions of a module, with the structs that they return.
-pub(super) fn items(functions: &[Function]) -> TokenStream {
+pub(super) fn items(functions: &[Function]) -> String {
     let mut structs = BTreeSet::new();
-    let mut items = TokenStream::new();
+    let mut items = String::new();
     for function in functions {
         if let Some((name, source)) = function.output_struct()
             && structs.insert(name)
         {
-            items.extend(source);
+            items += &source;
         }
-        items.extend(function.source());
+        items += &function.source;
     }
     items
 }
@@ -60,9 +55,10 @@ pub(super) fn path(runtime: &str) -> Result<TokenStream, String> {
     runtime.parse().map_err(|e| format!("`{runtime}` is not a path: {e}"))
 }
 
-pub(super) fn written(file: TokenStream, origin: &str) -> Result<String, String> {
-    let parsed = syn::parse2::<syn::File>(file).map_err(|e| format!("generated code does not parse: {e}"))?;
-    Ok(format!("// {origin}\n{}", prettyplease::unparse(&parsed)))
+/// A module: its functions and what else it has.
+pub(super) fn written(items: &str, rest: TokenStream, origin: &str) -> Result<String, String> {
+    let rest = syn::parse2::<syn::File>(rest).map_err(|e| format!("generated code does not parse: {e}"))?;
+    Ok(format!("// {origin}\nuse super::math;\n{items}{}", prettyplease::unparse(&rest)))
 }
 
 /// The gait's type with its description and its `impl Gait`.

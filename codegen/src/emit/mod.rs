@@ -1,14 +1,15 @@
 //! Rust source from programs: one documented function per kernel, one file per gait.
 //!
 //! The functions are straight lines of `let`s over named values: no allocation, no indexing, no
-//! branch. Long ones are cut into nested blocks, because rustc's debug information does not survive
-//! thousands of bindings in one scope.
+//! branch. They are written as text; the little that is left of a module goes through `quote`.
 
 mod batch;
+mod body;
 mod description;
 mod family;
 mod function;
 mod gait;
+mod layout;
 mod modules;
 mod whole;
 

@@ -22,7 +22,7 @@ pub fn whole_source(whole: &Whole, runtime: Option<&str>, origin: &str) -> Resul
         Some(runtime) => implementation(whole, &functions, runtime)?,
         None => TokenStream::new(),
     };
-    written(quote! { use super::math; #items #robot }, origin)
+    written(&items, robot, origin)
 }
 
 /// Name of the module with the `number`-th way in which the gaits of a robot lock its joints.

@@ -57,6 +57,16 @@ pub struct Operations {
     pub sincos: usize,
 }
 
+impl Node {
+    /// The sum that it is computed from.
+    pub fn sum(self) -> Option<usize> {
+        match self {
+            Node::Input(..) => None,
+            Node::Sin(s) | Node::Cos(s) | Node::Value(s) | Node::Reciprocal(s) => Some(s),
+        }
+    }
+}
+
 impl Term {
     /// Multiplications to evaluate it.
     pub fn cost(&self) -> usize {
@@ -123,9 +133,8 @@ impl Program {
                 continue;
             }
             seen[*id as usize] = true;
-            match self.nodes[*id as usize] {
-                Node::Input(..) => {}
-                Node::Sin(s) | Node::Cos(s) | Node::Value(s) | Node::Reciprocal(s) => self.visit_sum(s, seen, order),
+            if let Some(sum) = self.nodes[*id as usize].sum() {
+                self.visit_sum(sum, seen, order);
             }
             order.push(*id);
         }

@@ -1,0 +1,222 @@
+//! The body of a kernel: a straight line of `let`s over named values, and what it returns.
+//!
+//! Long ones are cut into nested blocks, because rustc's debug information does not survive thousands
+//! of bindings in one scope.
+
+use super::function::Function;
+use super::layout::{Layout, indent, line};
+use crate::dynamics::Shape;
+use crate::expr::Kind;
+use crate::program::{Id, Node, Sum, Term};
+use std::fmt::Write;
+
+/// Bindings per scope.
+const BLOCK: usize = 200;
+
+/// A program as it is written: what its nodes are called, and which of them anything needs.
+struct Body<'a> {
+    function: &'a Function<'a>,
+    order: Vec<Id>,
+    used: Vec<bool>,
+    names: Vec<String>,
+}
+
+/// A `let` and the nodes that it gives a value.
+struct Binding {
+    nodes: Vec<Id>,
+    text: String,
+}
+
+/// Writes the body of a function.
+pub fn write(function: &Function, out: &mut String) {
+    let order = function.program.schedule();
+    let mut used = vec![false; function.program.nodes.len()];
+    order.iter().for_each(|id| used[*id as usize] = true);
+    let names = function.program.nodes.iter().enumerate().map(|(id, node)| name(function, id, *node)).collect();
+    let body = Body { function, order, used, names };
+    body.inputs(out);
+    body.lets(out);
+    body.outputs(out);
+}
+
+fn name(function: &Function, id: usize, node: Node) -> String {
+    match node {
+        Node::Input(i, k) => input_name(function, i, k),
+        Node::Sin(s) => format!("sin{s}"),
+        Node::Cos(s) => format!("cos{s}"),
+        Node::Value(_) | Node::Reciprocal(_) => format!("v{id}"),
+    }
+}
+
+fn input_name(function: &Function, input: usize, element: usize) -> String {
+    match function.ring.kind(function.kernel.inputs[input].symbols[element]) {
+        Kind::Symbol(name) => name,
+        _ => format!("in{input}_{element}"),
+    }
+}
+
+impl Body<'_> {
+    /// Inputs by the names of their elements.
+    fn inputs(&self, out: &mut String) {
+        let program = &self.function.program;
+        let mut used: Vec<Vec<bool>> =
+            self.function.kernel.inputs.iter().map(|i| vec![false; i.symbols.len()]).collect();
+        for (id, node) in program.nodes.iter().enumerate() {
+            if let Node::Input(i, k) = node {
+                used[*i][*k] |= self.used[id];
+            }
+        }
+        for (i, input) in self.function.kernel.inputs.iter().enumerate() {
+            if input.scalar {
+                let name = input_name(self.function, i, 0);
+                if name != input.name {
+                    line(out, &format!("let {name} = {};", input.name), 1);
+                }
+                continue;
+            }
+            indent(out, 1);
+            let name = |k: usize| if used[i][k] { input_name(self.function, i, k) } else { "_".into() };
+            let names = (0..input.symbols.len()).map(|k| Layout::Sum(name(k)));
+            Layout::list("let [", names, format!("] = *{};", input.name)).write(out, 1);
+        }
+    }
+
+    /// The bindings, in scopes of limited size that hand on what is needed later.
+    fn lets(&self, out: &mut String) {
+        let bindings = self.bindings();
+        if bindings.len() <= BLOCK {
+            return bindings.iter().for_each(|b| line(out, &b.text, 1));
+        }
+        let last_use = self.last_uses(&bindings);
+        for (number, block) in bindings.chunks(BLOCK).enumerate() {
+            let end = (number + 1) * BLOCK;
+            let kept = block.iter().flat_map(|b| &b.nodes).filter(|id| last_use[**id as usize] >= end);
+            let kept: Vec<&str> = kept.map(|id| self.names[*id as usize].as_str()).collect();
+            let list =
+                |open: &str, close: &str| Layout::list(open, kept.iter().map(|k| Layout::Sum((*k).into())), close);
+            indent(out, 1);
+            list("let [", "] = {").write(out, 1);
+            block.iter().for_each(|b| line(out, &b.text, 2));
+            indent(out, 2);
+            list("[", "]").write(out, 2);
+            line(out, "};", 1);
+        }
+    }
+
+    fn bindings(&self) -> Vec<Binding> {
+        let program = &self.function.program;
+        // Sine and cosine of each argument.
+        let mut pairs = vec![[None; 2]; program.sums.len()];
+        for id in &self.order {
+            match program.nodes[*id as usize] {
+                Node::Sin(s) => pairs[s][0] = Some(*id),
+                Node::Cos(s) => pairs[s][1] = Some(*id),
+                _ => {}
+            }
+        }
+        let mut bindings = Vec::with_capacity(self.order.len());
+        for id in &self.order {
+            let name = &self.names[*id as usize];
+            bindings.push(match program.nodes[*id as usize] {
+                Node::Input(..) => continue,
+                Node::Sin(s) | Node::Cos(s) => {
+                    let pair = std::mem::take(&mut pairs[s]);
+                    if pair == [None; 2] {
+                        continue;
+                    }
+                    let [sin, cos] = pair.map(|id| id.map_or("_", |id| &self.names[id as usize]));
+                    let text = format!("let ({sin}, {cos}) = math::sin_cos({});", self.sum(&program.sums[s]));
+                    Binding { nodes: pair.into_iter().flatten().collect(), text }
+                }
+                Node::Value(s) => {
+                    Binding { nodes: vec![*id], text: format!("let {name} = {};", self.sum(&program.sums[s])) }
+                }
+                Node::Reciprocal(s) => {
+                    Binding { nodes: vec![*id], text: format!("let {name} = 1.0 / ({});", self.sum(&program.sums[s])) }
+                }
+            });
+        }
+        bindings
+    }
+
+    /// For each node the last binding that uses it; the largest number where an output does.
+    fn last_uses(&self, bindings: &[Binding]) -> Vec<usize> {
+        let program = &self.function.program;
+        let mut last = vec![0; program.nodes.len()];
+        let factors = |s: usize| program.sums[s].iter().flat_map(|t| &t.factors).map(|id| *id as usize);
+        for (number, binding) in bindings.iter().enumerate() {
+            if let Some(s) = binding.nodes.first().and_then(|id| program.nodes[*id as usize].sum()) {
+                factors(s).for_each(|id| last[id] = number);
+            }
+        }
+        program.outputs.iter().flatten().for_each(|s| factors(*s).for_each(|id| last[id] = usize::MAX));
+        last
+    }
+
+    fn sum(&self, sum: &Sum) -> String {
+        if sum.is_empty() {
+            return "0.0".into();
+        }
+        let mut text = String::new();
+        // Positive terms first spares a negation.
+        let first = sum.iter().position(|t| t.coefficient > 0.0).unwrap_or(0);
+        let others = sum.iter().enumerate().filter(|(i, _)| *i != first).map(|(_, t)| t);
+        for (k, term) in std::iter::once(&sum[first]).chain(others).enumerate() {
+            text.push_str(match (k, term.coefficient < 0.0) {
+                (0, false) => "",
+                (0, true) => "-",
+                (_, false) => " + ",
+                (_, true) => " - ",
+            });
+            self.product(term, &mut text);
+        }
+        text
+    }
+
+    /// A term without its sign.
+    fn product(&self, term: &Term, text: &mut String) {
+        let size = term.coefficient.abs();
+        let mut between = "";
+        if size != 1.0 || term.factors.is_empty() {
+            let _ = write!(text, "{size:?}");
+            between = " * ";
+        }
+        for id in &term.factors {
+            text.push_str(between);
+            text.push_str(&self.names[*id as usize]);
+            between = " * ";
+        }
+    }
+
+    fn outputs(&self, out: &mut String) {
+        let (kernel, program) = (self.function.kernel, &self.function.program);
+        // An output that occurs in several places (A is symmetric) is computed once.
+        let mut count = vec![0; program.sums.len()];
+        program.outputs.iter().flatten().for_each(|s| count[*s] += 1);
+        let simple = |s: usize| program.sums[s].len() <= 1 && program.sums[s].iter().all(|t| t.cost() == 0);
+        let shared: Vec<bool> = (0..count.len()).map(|s| count[s] > 1 && !simple(s)).collect();
+        for s in (0..shared.len()).filter(|s| shared[*s]) {
+            line(out, &format!("let out{s} = {};", self.sum(&program.sums[s])), 1);
+        }
+        let value = |s: &usize| if shared[*s] { format!("out{s}") } else { self.sum(&program.sums[*s]) };
+        let list = |open: String, sums: &[usize]| Layout::list(open, sums.iter().map(value).map(Layout::Sum), "]");
+        let expression = |shape: Shape, label: String, sums: &[usize]| match shape {
+            Shape::Scalar => Layout::Sum(label + &value(&sums[0])),
+            Shape::Vector(_) => list(label + "[", sums),
+            Shape::Matrix(_, columns) => {
+                let rows = sums.chunks(columns.max(1)).map(|row| list("[".into(), row));
+                Layout::list(label + "[", rows, "]")
+            }
+        };
+        let values = kernel.outputs.iter().zip(&program.outputs);
+        let result = match kernel.outputs.as_slice() {
+            [one] => expression(one.shape, String::new(), &program.outputs[0]),
+            _ => {
+                let fields = values.map(|(o, sums)| expression(o.shape, format!("{}: ", o.name), sums));
+                Layout::list(format!("{} {{ ", self.function.struct_name()), fields, " }")
+            }
+        };
+        indent(out, 1);
+        result.write(out, 1);
+    }
+}
