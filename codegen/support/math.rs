@@ -6,6 +6,47 @@ pub fn sin_cos_batch<const N: usize>(x: &[f64; N], sin: &mut [f64; N], cos: &mut
     }
 }
 
+/// Angles whose sine and cosine fit side by side into a register.
+const SIDE_BY_SIDE: usize = if cfg!(target_feature = "avx512f") {
+    8
+} else if cfg!(target_feature = "avx") {
+    4
+} else {
+    2
+};
+
+/// `count` angles and as many more as fill registers.
+pub const fn filled(count: usize) -> usize {
+    count.next_multiple_of(SIDE_BY_SIDE)
+}
+
+macro_rules! together {
+    ($($name:ident $count:literal: $($x:ident)+;)+) => {$(
+        /// Sines and cosines of some angles at once, each with the bits of [`sin_cos`]. What is beyond the angles is void.
+        // Angles come one by one and the function stays a call: that is how LLVM makes vector instructions of the loop.
+        #[inline(never)]
+        pub fn $name($($x: f64),+) -> [[f64; filled($count)]; 2] {
+            let mut x = [0.0; filled($count)];
+            x[..$count].copy_from_slice(&[$($x),+]);
+            let mut both = [[0.0; filled($count)]; 2];
+            for k in 0..x.len() {
+                (both[0][k], both[1][k]) = sin_cos(x[k]);
+            }
+            both
+        }
+    )+};
+}
+
+together! {
+    sin_cos_2 2: a b;
+    sin_cos_3 3: a b c;
+    sin_cos_4 4: a b c d;
+    sin_cos_5 5: a b c d e;
+    sin_cos_6 6: a b c d e f;
+    sin_cos_7 7: a b c d e f g;
+    sin_cos_8 8: a b c d e f g h;
+}
+
 /// Sine and cosine of `x` (rad): one pinned, branch-free implementation, so that results are the
 /// same bits on every machine. Largest error found by `tests/math.rs`: 0.82 ulp for |x| ≤ 1e5, 0.51
 /// within a few numbers of a multiple of π/2. NaN for non-finite arguments.

@@ -6,7 +6,7 @@
 use super::taylor::{Taylor, UNIT, above};
 use crate::verify::scalar::Scalar;
 use num_traits::Zero;
-use std::ops::{Div, DivAssign};
+use std::ops::Div;
 
 /// Error of the plain sine and cosine. `libm`'s are within 1 ulp, which is at most an eighth of this.
 const SINE: f64 = 8.0 * UNIT;
@@ -105,11 +105,5 @@ impl<const N: usize> Div for Taylor<N> {
         #[allow(clippy::suspicious_arithmetic_impl)] // That is how models are divided.
         let quotient = self * other.reciprocal();
         quotient
-    }
-}
-
-impl<const N: usize> DivAssign for Taylor<N> {
-    fn div_assign(&mut self, other: Self) {
-        *self = *self / other;
     }
 }

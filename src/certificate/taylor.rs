@@ -7,8 +7,9 @@
 //! Rounding is bounded, not switched: a sum or product of IEEE 754 is off by at most a share [`UNIT`] of itself, and
 //! every bound is made greater by more than its own evaluation can have lost (`above`).
 
+use crate::verify::scalar::assigning;
 use num_traits::Zero;
-use std::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use std::ops::{Add, Mul, Neg, Sub};
 
 /// Half the distance of 1 from the next number.
 pub const UNIT: f64 = f64::EPSILON / 2.0;
@@ -213,20 +214,4 @@ impl<const N: usize> Mul for Taylor<N> {
     }
 }
 
-impl<const N: usize> AddAssign for Taylor<N> {
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
-}
-
-impl<const N: usize> SubAssign for Taylor<N> {
-    fn sub_assign(&mut self, other: Self) {
-        *self = *self - other;
-    }
-}
-
-impl<const N: usize> MulAssign for Taylor<N> {
-    fn mul_assign(&mut self, other: Self) {
-        *self = *self * other;
-    }
-}
+assigning!([const N: usize] Taylor<N>);

@@ -28,7 +28,7 @@ pub use sample::Sample;
 
 /// Elements per half step, of 4 intervals each: more where the polynomials of eq. 15 may bend more often.
 pub fn elements(d: &Description) -> usize {
-    2 * d.polynomial_order
+    d.polynomial_order + 1
 }
 
 /// The optimization problem of one gait, criterion and speed.
@@ -196,9 +196,10 @@ impl<'a> Cycle<'a> {
         self.path.len()
     }
 
-    /// Scaled value of a path constraint in the last simulated motion.
-    pub fn path_value(&self, phase: usize, node: usize, constraint: usize) -> f64 {
-        self.path[constraint].value(self.phases[phase].instants.row(node))
+    /// Scaled values of all path constraints at a node, in the last simulated motion.
+    pub fn path_values(&self, phase: usize, node: usize) -> impl Iterator<Item = f64> + '_ {
+        let y = self.phases[phase].instants.row(node);
+        self.path.iter().map(move |constraint| constraint.value(y))
     }
 
     /// Number of variables Θ.

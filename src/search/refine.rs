@@ -30,14 +30,6 @@ struct Dip {
     value: f64,
 }
 
-/// A copy of the problem that looks at a fine grid.
-pub fn probe<'a>(cycle: &Cycle<'a>) -> Cycle<'a> {
-    let mut probe = cycle.again();
-    let grid: Vec<f64> = (1..GRID).map(|k| k as f64 / GRID as f64).collect();
-    probe.set_instants(&vec![grid; cycle.phases()]);
-    probe
-}
-
 impl Dips {
     /// Imposes the constraints where they dip. `cycle` must have simulated the same motion.
     pub fn impose(&self, cycle: &mut Cycle) {
@@ -47,42 +39,74 @@ impl Dips {
     }
 }
 
-/// Finds where constraints dip in the motion of `theta`.
-///
-/// # Errors
-/// If the motion does not exist.
-pub fn dips(probe: &mut Cycle, theta: &[f64]) -> Result<Dips, Undefined> {
-    probe.simulate(theta)?;
-    let mut result = Dips::default();
-    for phase in 0..probe.phases() {
-        let mut order: Vec<usize> = (0..probe.nodes(phase)).collect();
-        order.sort_by(|a, b| probe.instant(phase, *a).total_cmp(&probe.instant(phase, *b)));
-        // Collocation nodes and grid points can coincide.
-        order.dedup_by(|a, b| probe.instant(phase, *a) == probe.instant(phase, *b));
-        let s: Vec<f64> = order.iter().map(|k| probe.instant(phase, *k)).collect();
-        for constraint in 0..probe.path_count() {
-            let values: Vec<f64> = order.iter().map(|k| probe.path_value(phase, *k, constraint)).collect();
-            for k in 1..s.len() - 1 {
-                result.violation = result.violation.max(-values[k]);
-                // A dip inside the first or last interval shows in the parabola only.
-                let lowest = values[k] <= values[k - 1] && values[k] < values[k + 1];
-                if values[k] < NEAR && (lowest || k == 1 || k == s.len() - 2) {
-                    let (at, value) = vertex(&s[k - 1..=k + 1], &values[k - 1..=k + 1]);
-                    if at > s[k - 1] && at < s[k + 1] {
-                        result.violation = result.violation.max(-value);
-                        result.found.push(Dip { phase, constraint, s: at, value });
+/// A copy of the problem that looks at a fine grid.
+pub struct Probe<'a> {
+    cycle: Cycle<'a>,
+    /// Per half step its instants in order of time, as shares of it, and the nodes that they are.
+    instants: Vec<Vec<(f64, usize)>>,
+    /// Of one half step: a list of values at its instants for every constraint.
+    values: Vec<f64>,
+}
+
+impl<'a> Probe<'a> {
+    pub fn new(cycle: &Cycle<'a>) -> Probe<'a> {
+        let mut cycle = cycle.again();
+        let grid: Vec<f64> = (1..GRID).map(|k| k as f64 / GRID as f64).collect();
+        cycle.set_instants(&vec![grid; cycle.phases()]);
+        let instants = (0..cycle.phases()).map(|phase| {
+            let mut list: Vec<_> = (0..cycle.nodes(phase)).map(|node| (cycle.instant(phase, node), node)).collect();
+            list.sort_by(|a, b| a.0.total_cmp(&b.0));
+            // Collocation nodes and grid points can coincide.
+            list.dedup_by(|a, b| a.0 == b.0);
+            list
+        });
+        Probe { instants: instants.collect(), values: Vec::new(), cycle }
+    }
+
+    /// Finds where constraints dip in the motion of `theta`.
+    ///
+    /// # Errors
+    /// If the motion does not exist.
+    pub fn dips(&mut self, theta: &[f64]) -> Result<Dips, Undefined> {
+        let Probe { cycle, instants, values } = self;
+        cycle.simulate(theta)?;
+        let mut result = Dips::default();
+        for (phase, instants) in instants.iter().enumerate() {
+            let count = instants.len();
+            values.resize(count * cycle.path_count(), 0.0);
+            for (k, (_, node)) in instants.iter().enumerate() {
+                for (constraint, value) in cycle.path_values(phase, *node).enumerate() {
+                    values[constraint * count + k] = value;
+                }
+            }
+            for (constraint, values) in values.chunks(count).enumerate() {
+                let lowest = values[1..count - 1].iter().fold(f64::INFINITY, |least, value| least.min(*value));
+                result.violation = result.violation.max(-lowest);
+                if lowest >= NEAR {
+                    continue;
+                }
+                for k in 1..count - 1 {
+                    // A dip inside the first or last interval shows in the parabola only.
+                    let lowest = values[k] <= values[k - 1] && values[k] < values[k + 1];
+                    if values[k] < NEAR && (lowest || k == 1 || k == count - 2) {
+                        let s = [k - 1, k, k + 1].map(|k| instants[k].0);
+                        let (at, value) = vertex(&s, &values[k - 1..=k + 1]);
+                        if at > s[0] && at < s[2] {
+                            result.violation = result.violation.max(-value);
+                            result.found.push(Dip { phase, constraint, s: at, value });
+                        }
                     }
                 }
             }
         }
+        // Of two dips that turn out to be one, the lower has the last word.
+        result.found.sort_by(|a, b| b.value.total_cmp(&a.value));
+        Ok(result)
     }
-    // Of two dips that turn out to be one, the lower has the last word.
-    result.found.sort_by(|a, b| b.value.total_cmp(&a.value));
-    Ok(result)
 }
 
 /// Lowest point of the parabola through three points.
-fn vertex(s: &[f64], v: &[f64]) -> (f64, f64) {
+fn vertex(s: &[f64; 3], v: &[f64]) -> (f64, f64) {
     let (a, b) = ((v[1] - v[0]) / (s[1] - s[0]), (v[2] - v[1]) / (s[2] - s[1]));
     let curvature = (b - a) / (s[2] - s[0]);
     if curvature <= 0.0 {

@@ -1,8 +1,8 @@
 //! Numbers with their derivatives: exact differentiation of whatever is computed with them.
 
-use super::scalar::Scalar;
+use super::scalar::{Scalar, assigning};
 use num_traits::Zero;
-use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// x with its derivatives in N directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -123,26 +123,4 @@ impl<T: Scalar, const N: usize> Div for Dual<T, N> {
     }
 }
 
-impl<T: Scalar, const N: usize> AddAssign for Dual<T, N> {
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
-}
-
-impl<T: Scalar, const N: usize> SubAssign for Dual<T, N> {
-    fn sub_assign(&mut self, other: Self) {
-        *self = *self - other;
-    }
-}
-
-impl<T: Scalar, const N: usize> MulAssign for Dual<T, N> {
-    fn mul_assign(&mut self, other: Self) {
-        *self = *self * other;
-    }
-}
-
-impl<T: Scalar, const N: usize> DivAssign for Dual<T, N> {
-    fn div_assign(&mut self, other: Self) {
-        *self = *self / other;
-    }
-}
+assigning!([T: Scalar, const N: usize] Dual<T, N>);

@@ -61,6 +61,11 @@ impl<'a, T: Scalar> Instants<'a, T> {
         self.support.multibody.description()
     }
 
+    /// On which it stands.
+    pub fn leg(&self) -> usize {
+        self.leg
+    }
+
     pub fn numbers(&self) -> &Numbers<T> {
         self.support.multibody.numbers()
     }

@@ -12,7 +12,8 @@
 //! 4. the impacts ([`impact`], eq. 12) and how nearly the cycle closes (`cycle.rs`, eq. 16–19, 23, 24).
 //!
 //! From Q(t), β and β̇ to every margin the physics is written for any kind of number ([`scalar`]) and with the robot's
-//! numbers as such ([`numbers`]): plain ones, those that carry derivatives ([`dual`]), or functions of time with bounds.
+//! numbers as such ([`numbers`]): plain ones, those of several instants side by side ([`lanes`]), those that carry
+//! derivatives ([`dual`]), or functions of time with bounds.
 //!
 //! Sines and cosines come from the `libm` crate and everything else is arithmetic of IEEE 754, in a
 //! fixed order: the same motion gets the same receipt, to the bit, on every machine.
@@ -25,6 +26,7 @@ mod grid;
 pub mod impact;
 pub mod instants;
 pub mod integrate;
+pub mod lanes;
 pub mod margins;
 pub mod multibody;
 pub mod numbers;

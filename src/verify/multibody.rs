@@ -318,6 +318,7 @@ impl<T: Scalar> Frame<T> {
 }
 
 /// The matrix with these columns times a vector.
+#[inline]
 fn combined<T: Scalar>(columns: &[Vec3<T>; 3], v: &Vec3<T>) -> Vec3<T> {
     columns[0] * v.x + columns[1] * v.y + columns[2] * v.z
 }

@@ -59,6 +59,11 @@ impl<'a, T: Scalar> Phase<'a, T> {
         self.instants.description()
     }
 
+    /// On which it stands.
+    pub fn leg(&self) -> usize {
+        self.instants.leg()
+    }
+
     pub fn numbers(&self) -> &Numbers<T> {
         self.instants.numbers()
     }
@@ -68,13 +73,20 @@ impl<'a, T: Scalar> Phase<'a, T> {
         self.beta.end()
     }
 
+    /// β and β̇ at time `t`; the times of successive calls must not decrease.
+    pub fn beta(&mut self, t: f64) -> [T; 2] {
+        self.beta.at(t, &mut self.cursor)
+    }
+
     /// The state at time `t`; the times of successive calls must not decrease.
     pub fn at(&mut self, t: f64, state: &mut State<T>) -> Result<(), VerifyError> {
-        let beta = self.beta.at(t, &mut self.cursor);
-        self.instants
-            .at(t.into(), beta, state)
-            .filter(|x| x.value().is_finite())
-            .map(drop)
-            .ok_or(VerifyError::Singular { half_step: self.number, time: t })
+        let beta = self.beta(t);
+        let acceleration = self.instants.at(t.into(), beta, state);
+        acceleration.filter(|x| x.value().is_finite()).map(drop).ok_or(self.singular(t))
+    }
+
+    /// The error of a state that does not exist at time `t`.
+    pub fn singular(&self, t: f64) -> VerifyError {
+        VerifyError::Singular { half_step: self.number, time: t }
     }
 }

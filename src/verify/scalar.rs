@@ -32,6 +32,24 @@ pub trait Scalar:
     fn least_magnitude(self) -> f64;
 }
 
+/// `a op= b` as `a = a op b`.
+macro_rules! assigning {
+    ($generics:tt $type:ty) => {
+        assigning! { $generics $type: AddAssign add_assign + }
+        assigning! { $generics $type: SubAssign sub_assign - }
+        assigning! { $generics $type: MulAssign mul_assign * }
+        assigning! { $generics $type: DivAssign div_assign / }
+    };
+    ([$($generics:tt)*] $type:ty: $trait:ident $method:ident $op:tt) => {
+        impl<$($generics)*> std::ops::$trait for $type {
+            fn $method(&mut self, other: Self) {
+                *self = *self $op other;
+            }
+        }
+    };
+}
+pub(crate) use assigning;
+
 impl Scalar for f64 {
     fn sin_cos(self) -> (f64, f64) {
         libm::sincos(self)

@@ -1,18 +1,24 @@
 //! Kernels over many states at once: a loop over lanes that LLVM turns into vector instructions.
 //!
-//! The loop calls the kernel itself, so that a lane has the bits that the single state has. All numbers
-//! of a lane are written one by one: an inner loop over them would keep the outer one from vectorizing.
+//! The loop calls the kernel itself but for its sines and cosines, which it evaluates in line, with the same bits: so
+//! LLVM sees one body. All numbers of a lane are written one by one: an inner loop over them would keep the outer one from vectorizing.
 
+use super::body::Sines;
 use super::function::{Function, shape_type};
 use super::layout::{Layout, indent, line};
 use crate::dynamics::Shape;
+use std::fmt::Write;
 
 /// `kernel_batch` of a kernel with several outputs, with an array of lanes for every number.
 pub fn source(function: &Function) -> String {
     let kernel = &function.kernel;
     let single = &kernel.name;
-    let mut source =
-        format!("/// [`{single}`] of `N` states, with the same bits. Vectors and matrices are of lanes.\n#[inline]\n");
+    let mut source = format!("/// [`{single}`] of one of many states.\n#[inline(always)]\n");
+    function.write(&format!("fn {single}_lane("), Sines::Alone, &mut source);
+    let _ = writeln!(
+        source,
+        "/// [`{single}`] of `N` states, with the same bits. Vectors and matrices are of lanes.\n#[inline]"
+    );
     let lanes = "[f64; N]";
     let parameters = kernel.inputs.iter().map(|i| {
         let shape = if i.scalar { Shape::Scalar } else { Shape::Vector(i.symbols.len()) };
@@ -27,7 +33,7 @@ pub fn source(function: &Function) -> String {
         if i.scalar { Layout::Sum(format!("{}[lane]", i.name)) } else { Layout::list("&[", elements, "]") }
     });
     indent(&mut source, 2);
-    Layout::list(format!("let state = {single}("), arguments, ");").write(&mut source, 2);
+    Layout::list(format!("let state = {single}_lane("), arguments, ");").write(&mut source, 2);
     for o in &kernel.outputs {
         for place in places(o.shape) {
             line(&mut source, &format!("out.{0}{place}[lane] = state.{0}{place};", o.name), 2);

@@ -13,12 +13,25 @@ use std::fmt::Write;
 /// Bindings per scope.
 const BLOCK: usize = 200;
 
+/// Angles whose sine and cosine one function evaluates at most.
+const TOGETHER: usize = 8;
+
+/// How sines and cosines are evaluated; the bits are the same.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Sines {
+    /// Side by side, in a function of their own: fast for one state.
+    Together,
+    /// Each on its own, in line: so that a loop around the kernel takes many states side by side.
+    Alone,
+}
+
 /// A program as it is written: what its nodes are called, and which of them anything needs.
 struct Body<'a> {
     function: &'a Function<'a>,
     order: Vec<Id>,
     used: Vec<bool>,
     names: Vec<String>,
+    sines: Sines,
 }
 
 /// A `let` and the nodes that it gives a value.
@@ -28,12 +41,15 @@ struct Binding {
 }
 
 /// Writes the body of a function.
-pub fn write(function: &Function, out: &mut String) {
-    let order = function.program.schedule();
+pub fn write(function: &Function, sines: Sines, out: &mut String) {
+    let order = match sines {
+        Sines::Together => function.program.schedule_sines_first(),
+        Sines::Alone => function.program.schedule(),
+    };
     let mut used = vec![false; function.program.nodes.len()];
     order.iter().for_each(|id| used[*id as usize] = true);
     let names = function.program.nodes.iter().enumerate().map(|(id, node)| name(function, id, *node)).collect();
-    let body = Body { function, order, used, names };
+    let body = Body { function, order, used, names, sines };
     body.inputs(out);
     body.lets(out);
     body.outputs(out);
@@ -114,29 +130,44 @@ impl Body<'_> {
                 _ => {}
             }
         }
+        let at_once = if self.sines == Sines::Together { TOGETHER } else { 1 };
         let mut bindings = Vec::with_capacity(self.order.len());
-        for id in &self.order {
-            let name = &self.names[*id as usize];
-            bindings.push(match program.nodes[*id as usize] {
+        let mut order = self.order.iter().map(|id| (*id, program.nodes[*id as usize])).peekable();
+        while let Some((id, node)) = order.next() {
+            let name = &self.names[id as usize];
+            let text = match node {
                 Node::Input(..) => continue,
                 Node::Sin(s) | Node::Cos(s) => {
-                    let pair = std::mem::take(&mut pairs[s]);
-                    if pair == [None; 2] {
-                        continue;
+                    // With those that follow at once. Each argument is taken once, whichever of the two comes first.
+                    let mut run = vec![s];
+                    while let Some((_, Node::Sin(s) | Node::Cos(s))) = order.peek() {
+                        run.push(*s);
+                        order.next();
                     }
-                    let [sin, cos] = pair.map(|id| id.map_or("_", |id| &self.names[id as usize]));
-                    let text = format!("let ({sin}, {cos}) = math::sin_cos({});", self.sum(&program.sums[s]));
-                    Binding { nodes: pair.into_iter().flatten().collect(), text }
+                    let run: Vec<_> = run.into_iter().map(|s| (s, std::mem::take(&mut pairs[s]))).collect();
+                    let run: Vec<_> = run.into_iter().filter(|(_, pair)| *pair != [None; 2]).collect();
+                    bindings.extend(run.chunks(at_once).map(|pairs| self.sines_of(pairs)));
+                    continue;
                 }
-                Node::Value(s) => {
-                    Binding { nodes: vec![*id], text: format!("let {name} = {};", self.sum(&program.sums[s])) }
-                }
-                Node::Reciprocal(s) => {
-                    Binding { nodes: vec![*id], text: format!("let {name} = 1.0 / ({});", self.sum(&program.sums[s])) }
-                }
-            });
+                Node::Value(s) => format!("let {name} = {};", self.sum(&program.sums[s])),
+                Node::Reciprocal(s) => format!("let {name} = 1.0 / ({});", self.sum(&program.sums[s])),
+            };
+            bindings.push(Binding { nodes: vec![id], text });
         }
         bindings
+    }
+
+    /// Sines and cosines of the arguments that are these sums.
+    fn sines_of(&self, pairs: &[(usize, [Option<Id>; 2])]) -> Binding {
+        let arguments: Vec<String> = pairs.iter().map(|(s, _)| self.sum(&self.function.program.sums[*s])).collect();
+        let arguments = arguments.join(", ");
+        let name = |id: Option<Id>| id.map_or("_", |id| &self.names[id as usize]);
+        let [sin, cos] = [0, 1].map(|k| pairs.iter().map(|(_, pair)| name(pair[k])).collect::<Vec<_>>().join(", "));
+        let text = match pairs.len() {
+            1 => format!("let ({sin}, {cos}) = math::sin_cos({arguments});"),
+            n => format!("let [[{sin}, ..], [{cos}, ..]] = math::sin_cos_{n}({arguments});"),
+        };
+        Binding { nodes: pairs.iter().flat_map(|(_, pair)| pair).flatten().copied().collect(), text }
     }
 
     /// For each node the last binding that uses it; the largest number where an output does.
@@ -145,7 +176,7 @@ impl Body<'_> {
         let mut last = vec![0; program.nodes.len()];
         let factors = |s: usize| program.sums[s].iter().flat_map(|t| &t.factors).map(|id| *id as usize);
         for (number, binding) in bindings.iter().enumerate() {
-            if let Some(s) = binding.nodes.first().and_then(|id| program.nodes[*id as usize].sum()) {
+            for s in binding.nodes.iter().filter_map(|id| program.nodes[*id as usize].sum()) {
                 factors(s).for_each(|id| last[id] = number);
             }
         }

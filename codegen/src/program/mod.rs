@@ -127,6 +127,26 @@ impl Program {
         order
     }
 
+    /// The same with all sines and cosines side by side, as early as their angles are known.
+    pub fn schedule_sines_first(&self) -> Vec<Id> {
+        let mut order = Vec::new();
+        let mut state = vec![false; self.nodes.len()];
+        let is_sine = |id: &Id| matches!(self.nodes[*id as usize], Node::Sin(_) | Node::Cos(_));
+        let sines: Vec<Id> = self.schedule().into_iter().filter(is_sine).collect();
+        for sum in sines.iter().filter_map(|id| self.nodes[*id as usize].sum()) {
+            self.visit_sum(sum, &mut state, &mut order);
+        }
+        for id in sines {
+            if !std::mem::replace(&mut state[id as usize], true) {
+                order.push(id);
+            }
+        }
+        for sum in self.outputs.iter().flatten() {
+            self.visit_sum(*sum, &mut state, &mut order);
+        }
+        order
+    }
+
     fn visit_sum(&self, sum: usize, seen: &mut [bool], order: &mut Vec<Id>) {
         for id in self.sums[sum].iter().flat_map(|t| &t.factors) {
             if seen[*id as usize] {
