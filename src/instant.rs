@@ -5,7 +5,7 @@
 
 use crate::constraints::sharing;
 use crate::model::{Description, Gait};
-use crate::stance::{Layout, Mesh, Prescribed, Stance, basis_derivatives};
+use crate::stance::{Layout, Mesh, Stance, basis_derivatives};
 
 /// Where each quantity stands.
 #[derive(Clone, Copy, Debug)]
@@ -119,15 +119,12 @@ pub struct Instants {
     swing: [Vec<f64>; 2],
     /// Results of the `sharing` kernel, a row per node; none if nothing shared is looked at.
     sharing: Vec<f64>,
-    prescribed: Prescribed,
     /// Per node and quantity a row of derivatives in the local parameters.
     gradients: Vec<f64>,
     /// ∂β̈/∂parameters, a row per node.
     pub betadd_p: Vec<f64>,
     /// Per node and basis parameter the derivatives of Q, Q̇, Q̈.
     pub basis: Vec<[f64; 3]>,
-    /// Per node and prescribed coordinate the derivatives of Q, Q̇, Q̈ in T.
-    pub by_duration: Vec<[f64; 3]>,
 }
 
 impl Instants {
@@ -146,11 +143,9 @@ impl Instants {
             placement: vec![0.0; n * placement_length(nq, nc)],
             swing: [vec![0.0; nc + nc * 2 * nq], vec![0.0; nc + nc * 2 * nq]],
             sharing: vec![0.0; n * sharing_length(nq, quantities.shared)],
-            prescribed: Prescribed::new(layout.prescribed),
             gradients: vec![0.0; collocation * quantities.len() * layout.len()],
             betadd_p: vec![0.0; collocation * layout.len()],
             basis: vec![[0.0; 3]; collocation * layout.per_joint],
-            by_duration: vec![[0.0; 3]; collocation * layout.prescribed],
         }
     }
 
@@ -220,17 +215,15 @@ impl Instants {
         let value_rows = self.values.chunks_mut(y.len());
         let rows = self.states.iter_mut().zip(inverse_rows).zip(placement_rows).zip(value_rows);
         for (k, (((state, inverse), placement), values)) in rows.enumerate() {
-            let (s, jet) = &mesh.nodes[k];
-            self.prescribed.evaluate(&self.layout, &mesh.basis, jet, parameters);
+            let s = mesh.nodes[k].0;
+            let [q, qd, qdd] = stance.prescribed.at(k);
             for j in 0..self.layout.prescribed {
                 let index = d.prescribed_index(j);
-                state.q[index] = self.prescribed.q[j];
-                state.qd[index] = self.prescribed.qd[j];
-                state.qdd[index] = self.prescribed.qdd[j];
+                (state.q[index], state.qd[index], state.qdd[index]) = (q[j], qd[j], qdd[j]);
             }
             state.q[d.unactuated] = stance.beta[k];
             state.qd[d.unactuated] = stance.betad[k];
-            gait.inverse_jacobian(leg, &state.q, &state.qd, &self.prescribed.qdd, inverse);
+            gait.inverse_jacobian(leg, &state.q, &state.qd, qdd, inverse);
             state.qdd[d.unactuated] = inverse[0];
             gait.placement(leg, &state.q, placement);
             values[..nj + nc].copy_from_slice(&inverse[1..1 + nj + nc]);
@@ -315,11 +308,6 @@ impl Instants {
         for i in 0..layout.per_joint {
             self.basis[k * layout.per_joint + i] = basis_derivatives(&mesh.basis, jet, t, i);
         }
-        self.prescribed.evaluate(&layout, &mesh.basis, jet, parameters);
-        for j in 0..layout.prescribed {
-            let p = &self.prescribed;
-            self.by_duration[k * layout.prescribed + j] = [p.q_t[j], p.qd_t[j], p.qdd_t[j]];
-        }
     }
 
     /// Gradient of the platform's x at a node, in the local parameters; after `differentiate`.
@@ -371,7 +359,7 @@ impl<'a> Chain<'a> {
             d,
             layout,
             basis: &instants.basis[node * layout.per_joint..][..layout.per_joint],
-            by_duration: &instants.by_duration[node * layout.prescribed..][..layout.prescribed],
+            by_duration: stance.prescribed.by_duration(node),
             beta_p: &stance.beta_p[node * np..][..np],
             betad_p: &stance.betad_p[node * np..][..np],
         }

@@ -114,48 +114,54 @@ impl Layout {
     }
 }
 
-/// Q, Q̇, Q̈ and the derivatives of each in T at one instant.
+/// The prescribed coordinates at some instants, a row per instant: Q, Q̇, Q̈ (eq. 15) and the derivatives of each in T.
 #[derive(Clone, Debug, Default)]
 pub struct Prescribed {
-    pub q: Vec<f64>,
-    pub qd: Vec<f64>,
-    pub qdd: Vec<f64>,
-    pub q_t: Vec<f64>,
-    pub qd_t: Vec<f64>,
-    pub qdd_t: Vec<f64>,
+    count: usize,
+    q: Vec<f64>,
+    qd: Vec<f64>,
+    qdd: Vec<f64>,
+    by_duration: Vec<[f64; 3]>,
 }
 
 impl Prescribed {
-    pub fn new(n: usize) -> Prescribed {
-        let z = || vec![0.0; n];
-        Prescribed { q: z(), qd: z(), qdd: z(), q_t: z(), qd_t: z(), qdd_t: z() }
+    /// Room for `count` coordinates at some instants.
+    pub fn new(count: usize, instants: usize) -> Prescribed {
+        let z = || vec![0.0; count * instants];
+        Prescribed { count, q: z(), qd: z(), qdd: z(), by_duration: vec![[0.0; 3]; count * instants] }
     }
 
-    /// Evaluates eq. 15 for all prescribed coordinates.
-    pub fn evaluate(&mut self, layout: &Layout, basis: &Basis, jet: &Jet, parameters: &[f64]) {
+    /// Evaluates all coordinates at all nodes.
+    pub fn evaluate(&mut self, layout: &Layout, mesh: &Mesh, parameters: &[f64]) {
         let t = parameters[layout.duration()];
-        for k in 0..layout.prescribed {
-            let (mut v, mut d, mut dd) = (0.0, 0.0, 0.0);
-            let (mut rv, mut rd, mut rdd) = (0.0, 0.0, 0.0);
-            for i in 0..layout.per_joint {
-                let p = parameters[layout.joint(k, i)];
-                if basis.is_rate(i) {
-                    rv += jet.value[i] * p;
-                    rd += jet.first[i] * p;
-                    rdd += jet.second[i] * p;
-                } else {
-                    v += jet.value[i] * p;
-                    d += jet.first[i] * p;
-                    dd += jet.second[i] * p;
-                }
+        let (per_t, last) = (1.0 / t, layout.per_joint - 1);
+        for (node, (_, jet)) in mesh.nodes.iter().enumerate() {
+            for k in 0..layout.prescribed {
+                let own = &parameters[layout.joint(k, 0)..][..layout.per_joint];
+                // The values among the parameters, and the two rates, which are given times T.
+                let of = |jet: &[f64]| {
+                    let values =
+                        jet[2..last].iter().zip(&own[2..last]).fold(jet[0] * own[0], |sum, (b, p)| sum + b * p);
+                    (values, jet[1] * own[1] + jet[last] * own[last])
+                };
+                let ((v, rv), (d, rd), (dd, rdd)) = (of(&jet.value), of(&jet.first), of(&jet.second));
+                let at = node * self.count + k;
+                self.q[at] = v + t * rv;
+                self.qd[at] = d * per_t + rd;
+                self.qdd[at] = (dd * per_t + rdd) * per_t;
+                self.by_duration[at] = [rv, -d * per_t * per_t, -(2.0 * dd * per_t + rdd) * per_t * per_t];
             }
-            self.q[k] = v + t * rv;
-            self.qd[k] = d / t + rd;
-            self.qdd[k] = (dd / t + rdd) / t;
-            self.q_t[k] = rv;
-            self.qd_t[k] = -d / (t * t);
-            self.qdd_t[k] = -(2.0 * dd / t + rdd) / (t * t);
         }
+    }
+
+    /// Q, Q̇ and Q̈ at an instant.
+    pub fn at(&self, instant: usize) -> [&[f64]; 3] {
+        [&self.q, &self.qd, &self.qdd].map(|table| &table[instant * self.count..][..self.count])
+    }
+
+    /// Derivatives of Q, Q̇ and Q̈ in T at an instant, for each coordinate.
+    pub fn by_duration(&self, instant: usize) -> &[[f64; 3]] {
+        &self.by_duration[instant * self.count..][..self.count]
     }
 }
 
@@ -184,7 +190,8 @@ pub struct Stance {
     late: Vec<[f64; 6]>,
     early: Vec<f64>,
     gradient: Vec<f64>,
-    prescribed: Prescribed,
+    /// At all nodes.
+    pub prescribed: Prescribed,
     early_length: usize,
     layout: Layout,
 }
@@ -211,7 +218,7 @@ impl Stance {
             late: vec![[0.0; 6]; n],
             early: vec![0.0; n * early_length],
             gradient: vec![0.0; 4 * layout.prescribed],
-            prescribed: Prescribed::new(layout.prescribed),
+            prescribed: Prescribed::new(layout.prescribed, n),
             early_length,
             layout,
         }
@@ -223,10 +230,10 @@ impl Stance {
     /// If f1 comes near zero or changes sign, or the collocation equations have no solution.
     pub fn integrate(&mut self, gait: &dyn Gait, leg: usize, mesh: &Mesh, parameters: &[f64]) -> Result<(), Undefined> {
         let t = parameters[self.layout.duration()];
-        for (k, (_, jet)) in mesh.nodes.iter().enumerate() {
-            self.prescribed.evaluate(&self.layout, &mesh.basis, jet, parameters);
-            let early = &mut self.early[k * self.early_length..][..self.early_length];
-            gait.early(leg, &self.prescribed.q, &self.prescribed.qd, early);
+        self.prescribed.evaluate(&self.layout, mesh, parameters);
+        for (k, early) in self.early.chunks_mut(self.early_length).enumerate() {
+            let [q, qd, _] = self.prescribed.at(k);
+            gait.early(leg, q, qd, early);
         }
         self.beta[0] = parameters[self.layout.beta()];
         self.sigma[0] = parameters[self.layout.sigma()];
@@ -348,7 +355,7 @@ impl Stance {
         self.beta_p[layout.beta()] = 1.0;
         self.sigma_p[layout.sigma()] = 1.0;
         for k in 0..mesh.collocation() {
-            self.explicit(gait, leg, mesh, k, t, parameters);
+            self.explicit(gait, leg, mesh, k, t);
         }
         self.complete(0, t);
         for e in 0..mesh.elements {
@@ -357,11 +364,10 @@ impl Stance {
     }
 
     /// Fills the rows of node `k` with ∂(T β̇), ∂(T σ̇) at fixed (β, σ).
-    fn explicit(&mut self, gait: &dyn Gait, leg: usize, mesh: &Mesh, k: usize, t: f64, parameters: &[f64]) {
+    fn explicit(&mut self, gait: &dyn Gait, leg: usize, mesh: &Mesh, k: usize, t: f64) {
         let layout = self.layout;
         let nt = layout.prescribed;
         let jet = &mesh.nodes[k].1;
-        self.prescribed.evaluate(&layout, &mesh.basis, jet, parameters);
         let early = &self.early[k * self.early_length..][..self.early_length];
         gait.late_gradient(leg, early, self.beta[k], &mut self.gradient);
         let f1 = self.late[k][0];
@@ -370,7 +376,7 @@ impl Stance {
         rate.fill(0.0);
         moment.fill(0.0);
         let (mut rate_t, mut moment_t) = (self.betad[k], self.sigmad[k]);
-        for j in 0..nt {
+        for (j, [q_t, qd_t, _]) in self.prescribed.by_duration(k).iter().enumerate() {
             let [f1_q, f2_q, f2_qd, moment_q] = [0, 1, 2, 3].map(|g| self.gradient[g * nt + j]);
             let by_q = -(f2_q + self.betad[k] * f1_q) / f1;
             let by_qd = -f2_qd / f1;
@@ -379,8 +385,8 @@ impl Stance {
                 rate[layout.joint(j, i)] = t * (by_q * q + by_qd * qd);
                 moment[layout.joint(j, i)] = t * moment_q * q;
             }
-            rate_t += t * (by_q * self.prescribed.q_t[j] + by_qd * self.prescribed.qd_t[j]);
-            moment_t += t * moment_q * self.prescribed.q_t[j];
+            rate_t += t * (by_q * q_t + by_qd * qd_t);
+            moment_t += t * moment_q * q_t;
         }
         rate[layout.duration()] = rate_t;
         moment[layout.duration()] = moment_t;

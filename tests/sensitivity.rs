@@ -54,7 +54,8 @@ fn elasticities_add_up_to_the_dimension_of_the_criterion() {
         let found = sensitivities(gait, criterion, SPEED, &local.motion).unwrap();
         for (k, expected) in dimension(criterion.unit()).into_iter().enumerate() {
             let sum: f64 = found.slopes.iter().map(|s| s.elasticity * dimension(&s.unit)[k]).sum();
-            assert!((sum - expected).abs() < 1e-5, "{} {criterion:?} {k}: {sum}", gait.description().key);
+            // Multipliers are those of the optimizer's mesh.
+            assert!((sum - expected).abs() < 1e-4, "{} {criterion:?} {k}: {sum}", gait.description().key);
         }
     }
 }

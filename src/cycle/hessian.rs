@@ -17,6 +17,7 @@ use super::{Cycle, Variables, renamed};
 use crate::instant::direction;
 use crate::lgl::NODES;
 use crate::model::{Description, Gait};
+use crate::sqp::dot;
 use crate::stance::Stance;
 
 /// Share of an element per change of power over slope, beyond which a kink's curvature is averaged.
@@ -521,7 +522,7 @@ impl PhaseWork {
             _ => 0.0,
         };
         let basis = &p.instants.basis[node * m..][..m];
-        let by_t = &p.instants.by_duration[node * nt..][..nt];
+        let by_t = p.stance.prescribed.by_duration(node);
         let beta = d.unactuated;
         let sensitivity =
             [&p.stance.beta_p, &p.stance.betad_p, &p.instants.betadd_p].map(|table| &table[node * np..][..np]);
@@ -633,10 +634,6 @@ impl PhaseWork {
         }
         cross_duration(h, &self.scratch, 1.0 / travel, p.layout.duration());
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
 fn dot3(a: &[f64; 3], b: &[f64; 3]) -> f64 {

@@ -10,7 +10,7 @@ use crate::constraints::PathConstraint;
 use crate::constraints::sharing::pitches;
 use crate::lgl::NODES;
 use crate::model::Description;
-use crate::sqp::{self, Problem, Undefined, Values};
+use crate::sqp::{self, Problem, Undefined, Values, dot};
 
 /// Equalities of each half step: closure of β and of σ, touchdown.
 pub const CLOSURE: usize = 3;
@@ -393,7 +393,6 @@ impl Problem for Cycle<'_> {
 
     fn inequality_directions(&self, direction: &[f64], out: &mut [f64]) {
         let n = direction.len();
-        let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };
         let mut slots = out.iter_mut();
         let mut local = smallvec::SmallVec::<[f64; 64]>::new();
         let mut change = smallvec::SmallVec::<[f64; 32]>::new();

@@ -64,6 +64,7 @@ mod screening;
 mod status;
 mod trial;
 
+pub(crate) use dense::dot;
 pub use minimize::minimize;
 pub use multipliers::{Multipliers, multipliers};
 pub use objective::{Objective, Redirected};

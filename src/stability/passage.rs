@@ -4,7 +4,7 @@ use crate::cycle::{elements, renamed};
 use crate::instant::State;
 use crate::model::Gait;
 use crate::motion::{HalfStep, Motion};
-use crate::stance::{Layout, Mesh, Prescribed, Stance, Undefined};
+use crate::stance::{Layout, Mesh, Stance, Undefined};
 
 /// Further instants per half step at which the motion is looked at.
 const INSTANTS: usize = 500;
@@ -74,18 +74,16 @@ impl Passage {
         let last = mesh.collocation() - 1;
         let row = |of: &[f64]| [layout.beta(), layout.sigma()].map(|p| of[last * layout.len() + p]);
 
-        let mut prescribed = Prescribed::new(layout.prescribed);
-        let mut state = |node: usize| {
-            prescribed.evaluate(&layout, &mesh.basis, &mesh.nodes[node].1, &parameters);
+        let state = |node: usize| {
+            let [q, qd, qdd] = stance.prescribed.at(node);
             let mut at = State { q: vec![0.0; d.orientations()], ..State::default() };
             (at.qd, at.qdd) = (at.q.clone(), at.q.clone());
             for j in 0..layout.prescribed {
                 let index = d.prescribed_index(j);
-                (at.q[index], at.qd[index]) = (prescribed.q[j], prescribed.qd[j]);
-                at.qdd[index] = prescribed.qdd[j];
+                (at.q[index], at.qd[index], at.qdd[index]) = (q[j], qd[j], qdd[j]);
             }
             (at.q[d.unactuated], at.qd[d.unactuated]) = (stance.beta[node], stance.betad[node]);
-            at.qdd[d.unactuated] = beta_acceleration(gait, k, &at, &prescribed.qdd);
+            at.qdd[d.unactuated] = beta_acceleration(gait, k, &at, qdd);
             at
         };
         let mut instants: Vec<Instant> = (0..mesh.nodes.len())
