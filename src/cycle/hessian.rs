@@ -19,6 +19,7 @@ use crate::lgl::NODES;
 use crate::model::{Description, Gait};
 use crate::sqp::dot;
 use crate::stance::Stance;
+use std::array::from_fn;
 
 /// Share of an element per change of power over slope, beyond which a kink's curvature is averaged.
 const REACH: f64 = 1.0;
@@ -511,15 +512,10 @@ impl PhaseWork {
         let (q_q, rest) = blocks.split_at(nq * nq);
         let (q_qd, rest) = rest.split_at(nq * nq);
         let (q_qdd, qd_qd) = rest.split_at(nq * nq);
-        // G between (order a, coordinate i) and (order b, coordinate j).
-        let g = |a: usize, i: usize, b: usize, j: usize| match (a, b) {
-            (0, 0) => q_q[i * nq + j],
-            (0, 1) => q_qd[i * nq + j],
-            (1, 0) => q_qd[j * nq + i],
-            (0, 2) => q_qdd[i * nq + j],
-            (2, 0) => q_qdd[j * nq + i],
-            (1, 1) => qd_qd[i * nq + j],
-            _ => 0.0,
+        // G between all orders of coordinate i and all of coordinate j.
+        let g = |i: usize, j: usize| {
+            let (ij, ji) = (i * nq + j, j * nq + i);
+            Block { q_q: q_q[ij], q_qd: q_qd[ij], qd_q: q_qd[ji], q_qdd: q_qdd[ij], qdd_q: q_qdd[ji], qd_qd: qd_qd[ij] }
         };
         let basis = &p.instants.basis[node * m..][..m];
         let by_t = p.stance.prescribed.by_duration(node);
@@ -531,62 +527,55 @@ impl PhaseWork {
         let mut tt = 0.0;
         for jj in 0..nt {
             let i = d.prescribed_index(jj);
+            let mut by_duration = [0.0; 3];
             for ll in 0..nt {
-                let l = d.prescribed_index(ll);
-                let mut block = [[0.0; 3]; 3];
-                for (a, row) in block.iter_mut().enumerate() {
-                    for (b, slot) in row.iter_mut().enumerate() {
-                        *slot = g(a, i, b, l);
+                let block = g(i, d.prescribed_index(ll));
+                let part = block.times(&by_t[ll]);
+                by_duration = from_fn(|a| by_duration[a] + part[a]);
+                if ll > jj {
+                    continue;
+                }
+                let share = if ll == jj { 0.5 } else { 1.0 };
+                for (c, column) in basis.iter().enumerate() {
+                    let v = block.times(column).map(|x| share * x);
+                    for (r, row) in basis.iter().enumerate() {
+                        h[layout.joint(jj, r) * np + layout.joint(ll, c)] += dot3(row, &v);
                     }
                 }
-                // Columns: the basis of coordinate l, then T.
-                let times =
-                    |v: &[f64; 3]| [0, 1, 2].map(|a| block[a][0] * v[0] + block[a][1] * v[1] + block[a][2] * v[2]);
-                let by_duration = times(&by_t[ll]);
-                tt += dot3(&by_t[jj], &by_duration);
-                if ll <= jj {
-                    let share = if ll == jj { 0.5 } else { 1.0 };
-                    for (c, column) in basis.iter().enumerate() {
-                        let v = times(column).map(|x| share * x);
-                        for (r, row) in basis.iter().enumerate() {
-                            h[layout.joint(jj, r) * np + layout.joint(ll, c)] += dot3(row, &v);
-                        }
-                    }
-                }
-                for (r, row) in basis.iter().enumerate() {
-                    h[layout.joint(jj, r) * np + layout.duration()] += dot3(row, &by_duration);
-                }
+            }
+            tt += dot3(&by_t[jj], &by_duration);
+            for (r, row) in basis.iter().enumerate() {
+                h[layout.joint(jj, r) * np + layout.duration()] += dot3(row, &by_duration);
             }
         }
         h[layout.duration() * np + layout.duration()] += 0.5 * tt;
 
         // Unactuated coordinate: dense in the parameters.
-        for (c, v) in self.v.iter_mut().enumerate() {
-            let mut duration = 0.0;
-            for jj in 0..nt {
-                let i = d.prescribed_index(jj);
-                let column = [g(0, i, c, beta), g(1, i, c, beta), g(2, i, c, beta)];
+        self.v.iter_mut().for_each(|v| v.fill(0.0));
+        for jj in 0..nt {
+            let columns = g(d.prescribed_index(jj), beta).columns();
+            for (v, column) in self.v.iter_mut().zip(&columns) {
                 for (slot, row) in v[jj * m..(jj + 1) * m].iter_mut().zip(basis) {
-                    *slot = dot3(row, &column);
+                    *slot = dot3(row, column);
                 }
-                duration += dot3(&by_t[jj], &column);
-            }
-            v[layout.duration()] = duration;
-            v[layout.beta()] = 0.0;
-            v[layout.sigma()] = 0.0;
-            for (e, s) in sensitivity.iter().enumerate() {
-                let half = 0.5 * g(c, beta, e, beta);
-                if half != 0.0 {
-                    v.iter_mut().zip(*s).for_each(|(x, y)| *x += half * y);
-                }
-            }
-            // T multiplies β̇ where it is integrated: ω T β̇.
-            if c == 1 {
-                v[layout.duration()] += omega_beta;
+                v[layout.duration()] += dot3(&by_t[jj], column);
             }
         }
-        for (v, s) in self.v.iter().zip(&sensitivity) {
-            product(h, v, s, 1.0);
+        let columns = g(beta, beta).columns();
+        for (v, column) in self.v.iter_mut().zip(&columns) {
+            for (half, s) in column.iter().map(|x| 0.5 * x).zip(&sensitivity).filter(|(half, _)| *half != 0.0) {
+                v.iter_mut().zip(*s).for_each(|(x, y)| *x += half * y);
+            }
+        }
+        // T multiplies β̇ where it is integrated: ω T β̇.
+        self.v[1][layout.duration()] += omega_beta;
+        let [v0, v1, v2] = &self.v;
+        let [s0, s1, s2] = sensitivity;
+        for (r, row) in h.chunks_mut(np).enumerate() {
+            let [x0, x1, x2] = [v0[r], v1[r], v2[r]];
+            for (((slot, s0), s1), s2) in row.iter_mut().zip(s0).zip(s1).zip(s2) {
+                *slot += x0 * s0 + x1 * s1 + x2 * s2;
+            }
         }
         // ω T σ̇, and T times the vertical velocity at the ends.
         if node <= p.last() {
@@ -633,6 +622,30 @@ impl PhaseWork {
             }
         }
         cross_duration(h, &self.scratch, 1.0 / travel, p.layout.duration());
+    }
+}
+
+/// Second derivatives in the orders of one coordinate (rows) and of another (columns); the others are zero.
+struct Block {
+    q_q: f64,
+    q_qd: f64,
+    qd_q: f64,
+    q_qdd: f64,
+    qdd_q: f64,
+    qd_qd: f64,
+}
+
+impl Block {
+    fn times(&self, v: &[f64; 3]) -> [f64; 3] {
+        [
+            self.q_q * v[0] + self.q_qd * v[1] + self.q_qdd * v[2],
+            self.qd_q * v[0] + self.qd_qd * v[1],
+            self.qdd_q * v[0],
+        ]
+    }
+
+    fn columns(&self) -> [[f64; 3]; 3] {
+        [[self.q_q, self.qd_q, self.qdd_q], [self.q_qd, self.qd_qd, 0.0], [self.q_qdd, 0.0, 0.0]]
     }
 }
 
