@@ -52,7 +52,7 @@ fn a_level_touchdown_of_the_amble_is_reported_as_singular() {
 
 #[test]
 fn model_shows_what_was_generated() {
-    for gait in ["trot", "amble", "curvet", "rabbit/walk"] {
+    for gait in ["trot", "amble", "curvet", "rabbit/walk", "a1/bound"] {
         let out = piaffe(&["model", gait, "--json", "-"], "");
         assert!(out.status.success(), "{}", text(&out.stderr));
         let model: Value = serde_json::from_slice(&out.stdout).unwrap();

@@ -34,17 +34,18 @@ fn polynomials_of_higher_order_need_less_work_and_torque() {
 #[test]
 fn the_receipt_agrees_with_the_optimizer_that_shares_no_code_with_it() {
     for gait in GAITS {
-        let found = search(*gait, Criterion::Torque, 0.5, &Settings { starts: 1, seed: 1 }, &|_| {});
-        let local = &found.optima[0].local;
-        let receipt = verify(gait.description(), &local.motion, 0.5, 2001).unwrap();
-        let name = gait.description().gait;
+        let speed = 0.4;
+        let found = search(*gait, Criterion::Torque, speed, &Settings::default(), &|_| {});
+        let name = gait.description().key;
+        let local = &found.optima.first().unwrap_or_else(|| panic!("{name}: no optimum")).local;
+        let receipt = verify(gait.description(), &local.motion, speed, 2001).unwrap();
         let apart = |a: f64, b: f64| (a / b - 1.0).abs();
         // The optimizer's mesh is just fine enough for its purpose, and |power| has kinks.
         let (torque, energy) =
             (apart(receipt.costs.torque, local.costs.torque), apart(receipt.costs.energy, local.costs.energy));
         assert!(torque < 1e-5 && energy < 1e-3, "{name}: {torque:e} {energy:e}");
         assert!(receipt.max_violation < VIOLATION && receipt.cycle_error < 1e-7, "{name}: {receipt:?}");
-        assert!((receipt.speed - 0.5).abs() < 1e-7);
+        assert!((receipt.speed - speed).abs() < 1e-7);
     }
 }
 

@@ -139,6 +139,15 @@ fn turning_gaits_have_the_energies_of_the_urdf() {
     );
 }
 
+/// The A1 in `model-spec/` is what its URDF says.
+#[test]
+fn the_shipped_a1_is_the_import() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/model-spec/a1/robot.toml");
+    let read = |text: &str| parse_robot("robot.toml", text).unwrap_or_else(|e| panic!("{}", e[0])).robot;
+    let shipped = read(&std::fs::read_to_string(path).unwrap());
+    assert_eq!(format!("{shipped:?}"), format!("{:?}", read(&imported().robot)));
+}
+
 #[test]
 fn what_is_no_such_robot_is_refused_with_advice() {
     let broken = |from: &str, to: &str| {

@@ -8,7 +8,7 @@ use piaffe_codegen::mechanism::{Family, Mechanism, parameters};
 use piaffe_codegen::spec::{Gait, Robot, parse_gait, parse_robot};
 use std::collections::BTreeMap;
 
-pub const GAITS: [&str; 4] = ["trot", "curvet", "amble", "rabbit/walk"];
+pub const GAITS: [&str; 5] = ["trot", "curvet", "amble", "rabbit/walk", "a1/bound"];
 
 /// Module, robot and gait of a shipped gait.
 pub fn files(key: &str) -> (&str, SpecFile, SpecFile) {
