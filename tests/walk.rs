@@ -6,20 +6,23 @@ use piaffe::motion::{Criterion, Motion};
 use piaffe::search::multi_start::{Settings, search};
 use piaffe::verify::verify;
 use piaffe::walk::{Point, Walk};
+use std::sync::LazyLock;
 
-const SPEED: f64 = 0.6;
+/// A speed at which every gait walks, m/s.
+const SPEED: f64 = 0.4;
 
 /// Any optimum of every gait.
+static MOTIONS: LazyLock<Vec<Motion>> = LazyLock::new(|| {
+    let motion = |gait: &&dyn Gait| {
+        let found = search(*gait, Criterion::Torque, SPEED, &Settings::default(), &|_| {});
+        found.optima[0].local.motion.clone()
+    };
+    GAITS.iter().map(motion).collect()
+});
+
 fn walks(intervals: usize) -> Vec<(&'static dyn Gait, Motion, Walk<'static>)> {
-    let settings = Settings { starts: 1, ..Settings::default() };
-    let mut all = Vec::new();
-    for gait in GAITS.iter().copied() {
-        let found = search(gait, Criterion::Torque, SPEED, &settings, &|_| {});
-        let motion = found.optima[0].local.motion.clone();
-        let walk = Walk::even(gait, &motion, intervals).unwrap();
-        all.push((gait, motion, walk));
-    }
-    all
+    let motions = GAITS.iter().copied().zip(MOTIONS.iter().cloned());
+    motions.map(|(gait, motion)| (gait, motion.clone(), Walk::even(gait, &motion, intervals).unwrap())).collect()
 }
 
 fn distance(a: Point, b: Point) -> f64 {
