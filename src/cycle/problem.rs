@@ -133,6 +133,18 @@ impl Cycle<'_> {
         }
     }
 
+    /// The nodes of its half step at which inequality row `i` takes its values, with their weights; none of an impact.
+    pub fn row_nodes(&self, i: usize) -> Vec<(usize, f64)> {
+        match self.locate(i) {
+            Row::Path { node, .. } => vec![(node, 1.0)],
+            Row::Dip { phase, index } => {
+                let dip = &self.phases[phase].dips[index];
+                (dip.first()..).zip(dip.lowest.shape).collect()
+            }
+            Row::Impact { .. } => Vec::new(),
+        }
+    }
+
     /// Which constraint inequality row `i` is, in words.
     pub fn label(&self, i: usize) -> Label {
         match self.place(i) {

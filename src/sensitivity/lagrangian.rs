@@ -1,8 +1,8 @@
 //! ∂L/∂p with Θ and the multipliers kept: L = C − λᵀc_E − μᵀc_I − νᵀ(Θ − bounds), every function of it as the nonlinear program has it.
 //!
 //! Numbers of the robot change the impacts, with them the velocities and the momentum at the beginning of each half step, and β
-//! along it. The end of a half step is part of Θ. Where a row of L is taken at a dip between nodes, the dip's motion does not
-//! matter (envelope theorem).
+//! along it. The end of a half step is part of Θ. A row of L at a dip between nodes is the quartic through the nodes, as in the
+//! program; the dip's motion does not matter (envelope theorem).
 
 use crate::constraints::{ImpactConstraints, path_constraints_of};
 use crate::cycle::{CLOSURE, Place, renamed};
@@ -140,27 +140,28 @@ impl<'a> Slopes<'a> {
         let last = cycle.last_node(k);
         let mut weights = vec![Vec::new(); last + 1];
         cycle.work_partials(k).for_each(|(node, quantity, weight)| weights[node].push((quantity, weight)));
-        let mut rows: Vec<(f64, usize, f64)> = self
-            .priced()
-            .filter_map(|(i, multiplier)| match cycle.place(i) {
-                Place::Instant { phase, share, constraint } if phase == k => Some((share, constraint, multiplier)),
-                _ => None,
-            })
-            .collect();
-        rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut rows = vec![Vec::new(); last + 1];
+        for (i, multiplier) in self.priced() {
+            if let Place::Instant { phase, constraint, .. } = cycle.place(i)
+                && phase == k
+            {
+                cycle
+                    .row_nodes(i)
+                    .into_iter()
+                    .for_each(|(node, part)| rows[node].push((constraint, multiplier * part)));
+            }
+        }
         let constraints = path_constraints_of(d, numbers);
         let mut state = State::new(d);
-        let mut rows = rows.into_iter().peekable();
-        for (node, weights) in weights.iter().enumerate() {
+        for (node, (weights, rows)) in weights.iter().zip(&rows).enumerate() {
             let share = cycle.instant(k, node);
-            while let Some((at, constraint, multiplier)) = rows.next_if(|row| row.0 <= share) {
-                phase.at(at * duration, &mut state).ok()?;
-                lagrangian -= constraints[constraint].value(&quantities(d, &state, at, duration)).scale(multiplier);
-            }
             phase.at(share * duration, &mut state).ok()?;
             let y = quantities(d, &state, share, duration);
             for (quantity, weight) in weights {
                 lagrangian += y[*quantity].scale(weight / cycle.travel());
+            }
+            for (constraint, multiplier) in rows {
+                lagrangian -= constraints[*constraint].value(&y).scale(*multiplier);
             }
             if node == 0 {
                 *travel -= state.platform.x;

@@ -246,22 +246,26 @@ impl<'a, 'p, P: Problem> Run<'a, 'p, P> {
         }
     }
 
+    /// The solution is made of the run's own memory: the end allocates nothing either, whatever there is to tell.
     pub(super) fn end(self, status: Status, iterations: usize) -> Solution {
-        let view = &self.view;
-        let n = view.n;
-        let mut x = vec![0.0; n];
-        view.leave(&self.point.z, &mut x);
-        let unweigh = |m: &[f64], w: &[f64]| m.iter().zip(w).map(|(m, w)| m * w).collect::<Vec<_>>();
-        let (equalities, inequalities) =
-            (unweigh(&self.lambda, &view.equality_weights), unweigh(&self.mu, &view.inequality_weights));
-        let bounds: Vec<f64> = self.nu.iter().zip(&view.scale).map(|(nu, s)| nu / s).collect();
-        let conflict = (status == Status::Infeasible).then(|| Conflict {
-            equalities: self.lambda.clone(),
-            inequalities: self.mu.clone(),
-            bounds: bounds.clone(),
-            stationarity: self.kkt.stationarity,
+        let Run { view, mut point, trial, lambda, mu, nu, .. } = self;
+        let times = |mut to: Vec<f64>, from: &[f64], w: &[f64]| {
+            to.iter_mut().zip(from.iter().zip(w)).for_each(|(to, (m, w))| *to = m * w);
+            to
+        };
+        let equalities = times(trial.values.equalities, &lambda, &view.equality_weights);
+        let inequalities = times(trial.values.inequalities, &mu, &view.inequality_weights);
+        let mut bounds = self.d;
+        bounds.iter_mut().zip(nu.iter().zip(&view.scale)).for_each(|(b, (nu, s))| *b = nu / s);
+        let conflict = (status == Status::Infeasible).then(|| {
+            let mut same = nu;
+            same.copy_from_slice(&bounds);
+            Conflict { equalities: lambda, inequalities: mu, bounds: same, stationarity: self.kkt.stationarity }
         });
-        let values = view.raw_values(&self.point);
+        let mut x = trial.z;
+        view.leave(&point.z, &mut x);
+        view.unweigh(&mut point);
+        let values = point.values;
         Solution {
             x,
             objective: values.objective,

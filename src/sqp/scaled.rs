@@ -134,14 +134,11 @@ impl<'p, P: Problem> Scaled<'p, P> {
         worst
     }
 
-    /// Values in the problem's own units.
-    pub(super) fn raw_values(&self, point: &Point) -> Values {
-        let divide = |c: &[f64], w: &[f64]| c.iter().zip(w).map(|(c, w)| c / w).collect();
-        Values {
-            objective: point.values.objective,
-            equalities: divide(&point.values.equalities, &self.equality_weights),
-            inequalities: divide(&point.values.inequalities, &self.inequality_weights),
-        }
+    /// Values back in the problem's own units.
+    pub(super) fn unweigh(&self, point: &mut Point) {
+        let Values { equalities, inequalities, .. } = &mut point.values;
+        equalities.iter_mut().zip(&self.equality_weights).for_each(|(c, w)| *c /= w);
+        inequalities.iter_mut().zip(&self.inequality_weights).for_each(|(c, w)| *c /= w);
     }
 
     /// Linearizes at the latest evaluated point and gives ∇f.
