@@ -211,6 +211,19 @@ fn what_no_reactions_balance_is_said() {
     assert!(receipt.best_shares.support > 0.01);
 }
 
+/// The A1's mass centre lies beside its middle. Standing, the feet of a pair make up for it by unequal shares; at an impact,
+/// when no joint takes an impulse either, they cannot.
+#[test]
+fn a_robot_that_is_heavier_on_one_side_stands_but_does_not_land_evenly() {
+    let gait = gait("a1/bound");
+    let (_, motion) = optimum(gait, Criterion::Torque);
+    let receipt = RealLegs::new(gait, &motion).unwrap();
+    assert!(receipt.equal_shares.support > 1e-3 && receipt.best_shares.support < 1e-12, "{receipt:?}");
+    assert!(receipt.largest_load > 0.505, "{receipt:?}");
+    assert!(receipt.best_shares.impact > 1e-5 && receipt.best_shares.impact < 1e-2, "{receipt:?}");
+    assert!(receipt.verdict() == Verdict::NoEquilibrium && receipt.sentence().contains("momentum"), "{receipt:?}");
+}
+
 #[test]
 fn the_command_writes_what_the_library_lifts() {
     let gait = gait("amble");

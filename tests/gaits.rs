@@ -34,7 +34,7 @@ fn polynomials_of_higher_order_need_less_work_and_torque() {
 #[test]
 fn the_receipt_agrees_with_the_optimizer_that_shares_no_code_with_it() {
     for gait in GAITS {
-        let speed = 0.4;
+        let speed = 0.5;
         let found = search(*gait, Criterion::Torque, speed, &Settings::default(), &|_| {});
         let name = gait.description().key;
         let local = &found.optima.first().unwrap_or_else(|| panic!("{name}: no optimum")).local;

@@ -13,7 +13,7 @@ use piaffe::sqp::Control;
 const SPEED: f64 = 0.6;
 
 fn optimum(gait: &dyn Gait, criterion: Criterion) -> Local {
-    search(gait, criterion, SPEED, &Settings { starts: 2, seed: 1 }, &|_| {}).optima[0].local.clone()
+    search(gait, criterion, SPEED, &Settings::default(), &|_| {}).optima[0].local.clone()
 }
 
 /// The least criterion at the changed problem, near a known optimum.
@@ -80,13 +80,15 @@ fn slopes_in_limits_and_speed_are_those_of_optima_of_changed_problems() {
             let (slope, differences) = (slope * value / best, differences * value / best);
             assert!((slope - differences).abs() < 1e-4 * (1.0 + slope.abs()), "{name} {of}: {slope} {differences}");
         };
-        let h = 1e-4 * SPEED;
+        // Optima are refined to 1e-7 between the nodes, which costs more where clearance has the A1's price.
+        let step = if gait.description().key.starts_with("a1/") { 1e-3 } else { 1e-4 };
+        let h = step * SPEED;
         let differences =
             (cost(gait, criterion, SPEED + h, &local) - cost(gait, criterion, SPEED - h, &local)) / (2.0 * h);
         check("speed", slope(&found, "speed"), differences, SPEED);
         for lever in gait.levers() {
             let exact = slope(&found, lever.name);
-            let h = 1e-4 * lever.value.abs();
+            let h = step * lever.value.abs();
             let (Some(more), Some(less)) = (moved(gait, lever, h), moved(gait, lever, -h)) else { continue };
             if exact == 0.0 || h == 0.0 {
                 continue;

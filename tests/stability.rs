@@ -9,7 +9,7 @@ use piaffe::verify::integrate::integrate;
 use piaffe::verify::polynomial::Polynomials;
 
 fn optimum(gait: &dyn Gait, criterion: Criterion) -> Motion {
-    search(gait, criterion, 0.6, &Settings { starts: 2, seed: 1 }, &|_| {}).optima[0].local.motion.clone()
+    search(gait, criterion, 0.6, &Settings::default(), &|_| {}).optima[0].local.motion.clone()
 }
 
 /// A robot whose joints are where they are wanted, with nothing linearized.
@@ -50,6 +50,12 @@ impl<'a> Tracked<'a> {
         }
         q[self.d.unactuated] = beta;
         [q, qd]
+    }
+
+    /// q, or its rates, as the next half step names them.
+    fn renamed(&self, values: &[f64]) -> Vec<f64> {
+        let name = |k| if self.d.half_steps == HalfSteps::Mirrored { self.d.swapped(k) } else { (k, 1.0) };
+        (0..values.len()).map(name).map(|(from, sign)| sign * values[from]).collect()
     }
 
     /// f1, f2, σ, c, σ̇ for these velocities.
@@ -102,11 +108,7 @@ impl<'a> Tracked<'a> {
         self.gait.platform_velocity(at.phase, &q, &qd, &mut velocity);
         let mut impact = vec![0.0; 2 * nc + nq];
         self.gait.impact(1 - at.phase, &q, &[velocity, qd].concat(), &mut impact);
-        let renamed = |values: &[f64]| -> Vec<f64> {
-            let name = |k| if self.d.half_steps == HalfSteps::Mirrored { self.d.swapped(k) } else { (k, 1.0) };
-            (0..nq).map(name).map(|(from, sign)| sign * values[from]).collect()
-        };
-        let (q, qd) = (renamed(&q), renamed(&impact[nc..nc + nq]));
+        let (q, qd) = (self.renamed(&q), self.renamed(&impact[nc..nc + nq]));
         let phase = (at.phase + 1) % self.durations.len();
         let sigma = self.terms(phase, &q, &qd)[2];
         let time = if self.restarts { 0.0 } else { at.time - self.durations[at.phase] };
@@ -319,11 +321,8 @@ fn along_the_path(tracked: &Tracked, motion: &Motion, phase: usize, entry: f64) 
     tracked.gait.platform_velocity(phase, &q, &qd, &mut velocity);
     let mut impact = vec![0.0; 2 * nc + nq];
     tracked.gait.impact(1 - phase, &q, &[velocity, qd].concat(), &mut impact);
-    let renamed = |values: &[f64]| -> Vec<f64> {
-        let name = |k| tracked.d.swapped(k);
-        (0..nq).map(name).map(|(from, sign)| sign * values[from]).collect()
-    };
-    Some(tracked.terms(phase, &renamed(&q), &renamed(&impact[nc..nc + nq]))[2])
+    let (q, qd) = (tracked.renamed(&q), tracked.renamed(&impact[nc..nc + nq]));
+    Some(tracked.terms((phase + 1) % tracked.d.phases(), &q, &qd)[2])
 }
 
 #[test]
@@ -341,7 +340,7 @@ fn the_map_of_phase_tracking_is_that_of_simulated_steps() {
         let sigma = tracked.terms(0, &q, &qd)[2];
         let twice = |share: f64| {
             let once = along_the_path(&tracked, &motion, 0, share * sigma)?;
-            Some(along_the_path(&tracked, &motion, 0, once)? / sigma)
+            Some(along_the_path(&tracked, &motion, 1 % d.phases(), once)? / sigma)
         };
         // Affine in σ²: deviations need not be small.
         for share in [0.5 * (1.0 + slowest_entry), 1.3_f64] {

@@ -89,6 +89,17 @@ fn a_sweep_has_its_points_greatest_speeds_and_local_optima() {
 }
 
 #[test]
+fn a_further_robot_has_its_page_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["--gait", "rabbit/walk", "--criterion", "torque", "--speeds", "0.6..0.7:0.1", "--starts", "1"];
+    let out = run(folder.path(), &arguments);
+    assert!(out.status.success(), "{}", text(&out.stderr));
+    for file in ["index.html", "figures/active-rabbit-walk-torque.svg"] {
+        assert!(folder.path().join(file).exists(), "{file}");
+    }
+}
+
+#[test]
 fn damage_is_reported_and_repaired_from_the_journal() {
     let folder = tempfile::tempdir().unwrap();
     run(folder.path(), &SMALL);

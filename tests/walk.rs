@@ -8,8 +8,7 @@ use piaffe::verify::verify;
 use piaffe::walk::{Point, Walk};
 use std::sync::LazyLock;
 
-/// A speed at which every gait walks, m/s.
-const SPEED: f64 = 0.4;
+const SPEED: f64 = 0.6;
 
 /// Any optimum of every gait.
 static MOTIONS: LazyLock<Vec<Motion>> = LazyLock::new(|| {

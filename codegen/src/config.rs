@@ -21,6 +21,7 @@ use std::{env, fs, io};
 #[derive(Clone, Debug)]
 pub struct Config {
     folder: PathBuf,
+    left_out: Vec<String>,
     parameters: Vec<String>,
     runtime: Option<String>,
 }
@@ -47,7 +48,14 @@ pub type Generated = (String, String);
 impl Config {
     /// The folder's path is relative to the package's root.
     pub fn new(folder: impl Into<PathBuf>) -> Config {
-        Config { folder: folder.into(), parameters: Vec::new(), runtime: Some("::piaffe::model".into()) }
+        let runtime = Some("::piaffe::model".into());
+        Config { folder: folder.into(), left_out: Vec::new(), parameters: Vec::new(), runtime }
+    }
+
+    /// Leaves out the further robot in the folder of this name.
+    pub fn without(mut self, robot: &str) -> Config {
+        self.left_out.push(robot.into());
+        self
     }
 
     /// Keeps numbers of the robots symbolic: those under a table of the specification, such as `links` or
@@ -91,7 +99,11 @@ impl Config {
         let out = PathBuf::from(env::var_os("OUT_DIR").ok_or("OUT_DIR is not set: run this from a build script")?);
         println!("cargo::rerun-if-changed={}", self.folder.display());
         let started = std::time::Instant::now();
-        let robots = robots(&root, &self.folder)?;
+        let mut robots = robots(&root, &self.folder)?;
+        for name in &self.left_out {
+            let known = robots.iter().position(|robot| robot.module == *name && !name.is_empty());
+            robots.remove(known.ok_or_else(|| format!("there is no robot `{name}` in {}", self.folder.display()))?);
+        }
         let files = match (&self.parameters[..], self.runtime.as_deref()) {
             ([], runtime) => generate(&robots, runtime)?,
             (parameters, Some(runtime)) => generate_families(&robots, parameters, runtime)?,

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{Derived, GAITS, files, shipped, specification};
+use common::{Derived, FAMILIES, GAITS, files, shipped, specification};
 use piaffe_codegen::dynamics::{Input, whole_kernels};
 use piaffe_codegen::mechanism::Whole;
 use piaffe_codegen::program::Program;
@@ -11,11 +11,11 @@ use piaffe_codegen::{Generated, RobotFiles, SpecFile, generate, generate_familie
 use std::fmt::Write;
 use syn::visit::{self, Visit};
 
-/// Shipped gaits, of their robots and of their families, generated with the specification found under `prefix`.
-fn generated(prefix: &str) -> Vec<Generated> {
+/// Robots with these of their gaits, as if the specification were found under `prefix`.
+fn robots(prefix: &str, gaits: &[&'static str]) -> Vec<RobotFiles> {
     let under = |file: SpecFile| SpecFile { path: format!("{prefix}{}", file.path), ..file };
     let mut robots: Vec<RobotFiles> = Vec::new();
-    for gait in GAITS {
+    for gait in gaits {
         let (module, robot, gait) = files(gait);
         match robots.iter_mut().find(|r| r.module == module) {
             Some(known) => known.gaits.push(under(gait)),
@@ -24,9 +24,14 @@ fn generated(prefix: &str) -> Vec<Generated> {
             }
         }
     }
+    robots
+}
+
+/// Shipped gaits, of their robots and of their families.
+fn generated(prefix: &str) -> Vec<Generated> {
     let all = ["gravity", "links", "legs", "actuators"].map(String::from);
-    let mut files = generate(&robots, Some("crate::model")).unwrap();
-    files.extend(generate_families(&robots, &all, "crate::model").unwrap());
+    let mut files = generate(&robots(prefix, &GAITS), Some("crate::model")).unwrap();
+    files.extend(generate_families(&robots(prefix, &FAMILIES), &all, "crate::model").unwrap());
     files
 }
 
@@ -215,7 +220,7 @@ fn sine_and_cosine_do_not_branch() {
 #[test]
 fn programs_compute_what_was_derived() {
     let robot = GAITS.map(|gait| (gait, Derived::new(&shipped(gait))));
-    let family = GAITS.map(|gait| (gait, Derived::of_family(gait)));
+    let family = FAMILIES.map(|gait| (gait, Derived::of_family(gait)));
     for (gait, d) in robot.into_iter().chain(family) {
         let mut number = 0u32;
         let mut next = || {

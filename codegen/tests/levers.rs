@@ -2,13 +2,13 @@
 
 mod common;
 
-use common::{GAITS, files, specification};
+use common::{FAMILIES, files, specification};
 use piaffe_codegen::mechanism::{Family, Mechanism, levers, parameters};
 use piaffe_codegen::spec::{parse_gait, parse_robot};
 
 #[test]
 fn slopes_of_masses_and_lengths_are_those_of_unit_robots() {
-    for key in GAITS {
+    for key in FAMILIES {
         let (robot, gait) = specification(key);
         let family = Family::new(&robot, &gait, parameters(&robot)).unwrap();
         let levers = levers(&robot, &gait);

@@ -1,6 +1,6 @@
 //! The verdict on the real legs in words.
 
-use super::receipt::{RealLegs, Verdict, Worst};
+use super::receipt::{BALANCED, RealLegs, Remainder, Verdict, Worst};
 
 impl Verdict {
     /// In a word or two.
@@ -30,8 +30,13 @@ impl RealLegs {
             }
             Verdict::BeyondLimits => "no shares of the impact keep to all limits".into(),
             Verdict::NoEquilibrium => {
-                let lack = self.best_shares.support.max(self.best_shares.impact);
-                format!("the real legs cannot move so: the platform's balance lacks {lack:.1e} of the robot's weight")
+                let Remainder { support, impact } = self.best_shares;
+                let lack = if support > BALANCED {
+                    format!("the platform's balance lacks {support:.1e} of the robot's weight")
+                } else {
+                    format!("the balance of the impact lacks {impact:.1e} of the robot's momentum at 1 m/s")
+                };
+                format!("the real legs cannot move so: {lack}")
             }
         }
     }

@@ -223,7 +223,7 @@ fn activity(line: &[GaitResult], ink: Ink) -> Option<Figure> {
     }
     scene.text([width - 6.0, bottom + 29.0], "speed, m/s", 11.0, Anchor::End, Ink::Muted);
     let mut figure = Figure::drawing(
-        &format!("active-{}-{criterion}", line[0].gait),
+        &format!("active-{}-{criterion}", line[0].gait.replace('/', "-")),
         &title,
         scene,
         "Filled: the limit has no room to spare somewhere in the step.",

@@ -7,6 +7,7 @@
 use crate::model::{Description, Gait, HalfSteps};
 use crate::motion::{HalfStep, Motion};
 use nalgebra::{DMatrix, DVector};
+use std::f64::consts::FRAC_PI_2;
 
 /// What distinguishes one start from another.
 #[derive(Clone, Debug)]
@@ -85,12 +86,20 @@ fn nominal_posture(d: &Description, plan: &Plan) -> Vec<f64> {
     let mut q = vec![0.0; d.orientations()];
     for leg in &d.legs {
         for (depth, j) in (leg.first_joint..leg.end_joint).enumerate() {
-            let [lo, hi] = d.joints[j].range;
+            let [lo, hi] = reach(d, j);
             let share = plan.posture.get(depth).copied().unwrap_or(0.5);
             q[j] = lo + share * (hi - lo);
         }
     }
     q
+}
+
+/// The part of a joint's range that a walk is drawn from, rad: a leg hangs, so that the platform's joints turn by no more than
+/// a quarter of a turn, however far they could.
+fn reach(d: &Description, j: usize) -> [f64; 2] {
+    let [lo, hi] = d.joints[j].range;
+    let hangs = [lo.max(-FRAC_PI_2), hi.min(FRAC_PI_2)];
+    if d.hangs_on_platform(j) && hangs[0] < hangs[1] { hangs } else { [lo, hi] }
 }
 
 fn half_step(gait: &dyn Gait, plan: &Plan, k: usize, durations: &[f64], travel: f64, nominal: &[f64]) -> HalfStep {

@@ -19,7 +19,7 @@ use std::sync::OnceLock;
 const SPEED: f64 = 0.6;
 
 fn optimum(gait: &dyn Gait, criterion: Criterion) -> Motion {
-    search(gait, criterion, SPEED, &Settings { starts: 1, seed: 1 }, &|_| {}).optima[0].local.motion.clone()
+    search(gait, criterion, SPEED, &Settings::default(), &|_| {}).optima[0].local.motion.clone()
 }
 
 #[test]

@@ -7,9 +7,9 @@ use piaffe::search::multi_start::{Settings, search};
 use std::io::Write;
 use std::process::{Command, Stdio};
 
-/// The optimum at 0.6 m/s from the default walk, as the file that `piaffe optimize` writes.
+/// The optimum at 0.6 m/s as the file that `piaffe optimize` writes.
 pub fn optimum(gait: &dyn Gait, criterion: Criterion) -> (GaitResult, Motion) {
-    let settings = Settings { starts: 1, ..Settings::default() };
+    let settings = Settings::default();
     let found = search(gait, criterion, 0.6, &settings, &|_| {});
     let result = GaitResult::new(gait, criterion, 0.6, &found, settings.seed, || 0.0);
     let motion = result.motion().unwrap();

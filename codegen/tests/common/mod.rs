@@ -10,6 +10,9 @@ use std::collections::BTreeMap;
 
 pub const GAITS: [&str; 5] = ["trot", "curvet", "amble", "rabbit/walk", "a1/bound"];
 
+/// Gaits of robots whose legs share their links, so that there is a family of each.
+pub const FAMILIES: [&str; 4] = ["trot", "curvet", "amble", "rabbit/walk"];
+
 /// Module, robot and gait of a shipped gait.
 pub fn files(key: &str) -> (&str, SpecFile, SpecFile) {
     let (module, folder, gait) = match key.split_once('/') {
