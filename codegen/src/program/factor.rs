@@ -5,8 +5,10 @@
 //! product of two nodes; or a scaled node, `k·a`. The divisor that saves most operations over all
 //! sums becomes a node of its own, and the search goes on until none saves any.
 
-use super::divisor::{Divisor, Factors, Item, cost, exact, hash_of, rounded, scaled_key, without};
-use super::market::{Best, Market, Origin};
+use super::divisor::{
+    Comparison, Divisor, Factors, Item, cost, exact, hash_of, marks_of, rounded, scaled_key, without,
+};
+use super::market::{Best, Market, Number, Origin};
 use super::{Id, Node, Program, Term};
 use smallvec::SmallVec;
 use std::collections::HashMap;
@@ -15,12 +17,26 @@ struct Search<'a> {
     nodes: &'a mut Vec<Node>,
     /// All terms there ever were.
     items: Vec<Item>,
-    /// Indices of the terms of each sum.
-    sums: Vec<Vec<u32>>,
+    sums: Vec<Terms>,
     /// Sums in which a node occurs or has occurred.
     places: Vec<Vec<u32>>,
     market: Market,
+    /// A zero per node, for comparisons.
+    hashes: Vec<u64>,
 }
+
+/// The terms of a sum.
+#[derive(Default)]
+struct Terms {
+    /// Their indices, and their numbers among all terms that the sum ever had.
+    now: Vec<(u32, u32)>,
+    /// For each of these a row with the divisors that it is with those before it.
+    pairs: Vec<Vec<Pair>>,
+}
+
+/// A divisor, and whether the older of its two terms comes first in it.
+#[derive(Clone, Copy, Default)]
+struct Pair(Number);
 
 /// An occurrence in a sum: which terms go, what takes their place.
 struct Rewrite {
@@ -33,9 +49,15 @@ struct Rewrite {
 
 /// Rewrites the sums of `program` over shared new nodes.
 pub fn factor(program: &mut Program) {
-    let places = vec![Vec::new(); program.nodes.len()];
-    let sums = vec![Vec::new(); program.sums.len()];
-    let mut search = Search { nodes: &mut program.nodes, items: Vec::new(), sums, places, market: Market::new() };
+    let pairs = program.sums.iter().map(|s| s.len() * s.len() / 2).sum();
+    let mut search = Search {
+        places: vec![Vec::new(); program.nodes.len()],
+        hashes: vec![0; program.nodes.len()],
+        nodes: &mut program.nodes,
+        items: Vec::new(),
+        sums: program.sums.iter().map(|_| Terms::default()).collect(),
+        market: Market::new(pairs),
+    };
     for (sum, terms) in program.sums.iter().enumerate() {
         terms.iter().for_each(|t| search.insert(sum, Item::new(t.coefficient, t.factors.clone())));
     }
@@ -43,24 +65,47 @@ pub fn factor(program: &mut Program) {
     while let Some(best) = search.market.best() {
         search.extract(&best);
     }
-    let term = |i: &u32| {
+    let term = |(i, _): &(u32, u32)| {
         let item = &search.items[*i as usize];
         Term { coefficient: item.coefficient, factors: item.factors.clone() }
     };
-    program.sums = search.sums.iter().map(|items| items.iter().map(term).collect()).collect();
+    program.sums = search.sums.iter().map(|terms| terms.now.iter().map(term).collect()).collect();
     program.sums.iter_mut().for_each(|sum| sum.sort_by(|a, b| a.factors.cmp(&b.factors)));
     merge_equal_sums(program);
+}
+
+impl Pair {
+    fn new(number: Number, ordered: bool) -> Pair {
+        Pair(number << 1 | u32::from(ordered))
+    }
+
+    fn number(self) -> Number {
+        self.0 >> 1
+    }
+
+    fn ordered(self) -> bool {
+        self.0 & 1 == 1
+    }
 }
 
 impl Search<'_> {
     /// Adds a term to a sum, with all that it offers.
     fn insert(&mut self, sum: usize, item: Item) {
         let new = self.items.len() as u32;
-        item.offers(|offer| self.market.add(&offer, offer.origin(new, new)));
-        for other in &self.sums[sum] {
-            let offer = self.items[*other as usize].offer_with(&item);
-            self.market.add(&offer, offer.origin(*other, new));
+        item.offers(new, |offer, saved| {
+            self.market.add(&offer, saved);
+        });
+        let terms = &mut self.sums[sum];
+        let birth = terms.pairs.len();
+        let mut row = vec![Pair::default(); birth];
+        let comparison = Comparison::new(&item, &mut self.hashes);
+        for (other, other_birth) in &terms.now {
+            let (offer, ordered, saved) = comparison.offer_with(&self.items[*other as usize], [*other, new]);
+            row[*other_birth as usize] = Pair::new(self.market.add(&offer, saved), ordered);
         }
+        drop(comparison);
+        terms.pairs.push(row);
+        terms.now.push((new, birth as u32));
         for id in &item.factors {
             let places = &mut self.places[*id as usize];
             if places.last() != Some(&(sum as u32)) {
@@ -68,22 +113,29 @@ impl Search<'_> {
             }
         }
         self.items.push(item);
-        self.sums[sum].push(new);
     }
 
     /// Takes a term out of a sum, with all that it offered.
     fn remove(&mut self, sum: usize, at: usize) {
-        let item = &self.items[self.sums[sum].swap_remove(at) as usize];
-        item.offers(|offer| self.market.take(&offer));
-        for other in &self.sums[sum] {
-            self.market.take(&self.items[*other as usize].offer_with(item));
+        let terms = &mut self.sums[sum];
+        let (number, birth) = terms.now.swap_remove(at);
+        let item = &self.items[number as usize];
+        item.offers(number, |offer, saved| self.market.take_by_key(offer.key, saved));
+        for (other, other_birth) in &terms.now {
+            let (early, late) = (birth.min(*other_birth), birth.max(*other_birth));
+            let pair = terms.pairs[late as usize][early as usize];
+            let other = &self.items[*other as usize];
+            let (x, y) = if (birth == early) == pair.ordered() { (item, other) } else { (other, item) };
+            let shared = x.factors.len() - self.market.first(pair.number());
+            self.market.take(pair.number(), x.saved(y, shared));
         }
+        terms.pairs[birth as usize] = Vec::new();
     }
 
     fn divisor(&self, origin: Origin) -> Divisor {
         let item = |i: u32| &self.items[i as usize];
         match origin {
-            Origin::Pair(i, j) => item(i).offer_with(item(j)).divisor(),
+            Origin::Pair(i, j) => Divisor::pair(item(i), item(j)),
             Origin::Product(a, b) => Divisor::Product(a, b),
             Origin::Scaled(a, i) => Divisor::Scaled(a, item(i).coefficient.abs()),
         }
@@ -105,6 +157,7 @@ impl Search<'_> {
         }
         self.nodes.push(Node::Value(self.sums.len()));
         self.places.push(Vec::new());
+        self.hashes.push(0);
         for list in found.chunk_by(|a, b| a.sum == b.sum) {
             let mut gone: Vec<usize> = list.iter().flat_map(|r| r.gone.iter().copied()).collect();
             gone.sort_unstable();
@@ -112,7 +165,7 @@ impl Search<'_> {
             list.iter().for_each(|r| self.insert(r.sum, Item::new(exact(r.coefficient / scale), r.factors.clone())));
         }
         let new = self.sums.len();
-        self.sums.push(Vec::new());
+        self.sums.push(Terms::default());
         for term in divisor.definition(scale) {
             self.insert(new, Item::new(term.coefficient, term.factors));
         }
@@ -135,7 +188,7 @@ impl Search<'_> {
     fn gain(&self, divisor: &Divisor, found: &[Rewrite], scale: f64) -> i32 {
         let mut gain = 0;
         for r in found {
-            let before: i32 = r.gone.iter().map(|at| self.items[self.sums[r.sum][*at] as usize].cost()).sum();
+            let before: i32 = r.gone.iter().map(|at| self.items[self.sums[r.sum].now[*at].0 as usize].cost()).sum();
             gain += before + r.gone.len() as i32 - 1 - cost(exact(r.coefficient / scale), r.factors.len());
         }
         let definition = divisor.definition(scale);
@@ -152,10 +205,11 @@ impl Search<'_> {
 
     /// Occurrences of `divisor` in a sum that do not overlap.
     fn occurrences(&self, sum: usize, divisor: &Divisor, node: Id, found: &mut Vec<Rewrite>) {
-        let items = || self.sums[sum].iter().map(|i| &self.items[*i as usize]).enumerate();
+        let items = || self.sums[sum].now.iter().map(|(i, _)| &self.items[*i as usize]).enumerate();
         match divisor {
             Divisor::Product(a, b) => {
-                for (i, item) in items() {
+                let marks = marks_of(&[*a, *b]);
+                for (i, item) in items().filter(|(_, item)| item.may_contain(marks)) {
                     let mut factors = item.factors.clone();
                     let mut times = 0;
                     while let Some(rest) = without(&factors, &[*a, *b]) {
@@ -188,8 +242,9 @@ impl Search<'_> {
             }
             Divisor::Pair { first, second, ratio } => {
                 let change = hash_of(second).wrapping_sub(hash_of(first));
-                let mut used = vec![false; self.sums[sum].len()];
-                for (i, item) in items() {
+                let marks = marks_of(first);
+                let mut used = vec![false; self.sums[sum].now.len()];
+                for (i, item) in items().filter(|(_, item)| item.may_contain(marks)) {
                     let Some(common) = without(&item.factors, first).filter(|_| !used[i]) else { continue };
                     let partner = item.hash.wrapping_add(change);
                     let fits = |j: usize, other: &Item| {

@@ -1,11 +1,10 @@
 //! The market of divisors: what each would save over all sums, and which saves most.
 //!
-//! There are hundreds of thousands of divisors and each is touched a few times, so a divisor is one
-//! small slot of a flat table. Keys are hashes already, and there is no random seed: same input, same
-//! program.
+//! There are hundreds of thousands of divisors and most are seen once. So they stand one after another as they are
+//! seen, and what is looked up all over memory is only a table of eight bytes each. Keys are hashes already, and
+//! there is no random seed: same input, same program.
 
 use super::Id;
-use super::divisor::Offer;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -17,139 +16,180 @@ pub enum Origin {
     Scaled(Id, u32),
 }
 
-#[derive(Clone, Copy, Default)]
-struct Slot {
-    /// 0: vacant.
-    key: u64,
+/// What is known of a divisor from its first occurrence.
+#[derive(Clone, Copy)]
+pub struct Offer {
+    pub key: u64,
+    pub origin: Origin,
+    /// Operations that a definition costs, with the first or the second part's coefficient 1.
+    pub cost: [i32; 2],
+    /// Factors of a pair's first part.
+    pub first: u16,
+}
+
+/// A divisor, by the order in which they were first seen.
+pub type Number = u32;
+
+struct Listing {
+    offer: Offer,
     /// What its occurrences save in all, for either choice of the coefficient that is 1.
     saved: [i32; 2],
     /// What occurrences that overlap, so that not all can be replaced, were found to count too much.
     overcount: i32,
     /// The gain of its highest entry in the queue.
     queued: i32,
-    /// Number in order of first sight.
-    age: u32,
-    cost: [i16; 2],
 }
 
-impl Slot {
+impl Listing {
     /// Operations saved if all occurrences are replaced, less what the divisor costs.
     fn gain(&self) -> i32 {
-        let with = |unit: usize| self.saved[unit] - i32::from(self.cost[unit]);
+        let with = |unit: usize| self.saved[unit] - self.offer.cost[unit];
         with(0).max(with(1)) - self.overcount
     }
 }
 
 /// The divisor to extract next.
 pub struct Best {
-    pub key: u64,
+    pub number: Number,
     pub origin: Origin,
     pub gain: i32,
 }
 
 /// All divisors that the sums offer.
 pub struct Market {
-    /// Open addressing; the length is a power of two.
-    slots: Vec<Slot>,
-    origins: Vec<Origin>,
-    /// By gain, then the oldest first. Entries may be out of date: too high, never too low.
-    queue: BinaryHeap<(i32, Reverse<u32>, u64)>,
+    listings: Vec<Listing>,
+    /// Open addressing: half a key and the divisor's number; the length is a power of two.
+    table: Vec<(u32, Number)>,
+    /// The divisors of each gain, oldest first. Gains may be out of date: too high, never too low.
+    queue: Vec<BinaryHeap<Reverse<Number>>>,
     /// Whether the queue is kept up to date.
     open: bool,
 }
 
+const VACANT: Number = Number::MAX;
+
 impl Market {
-    pub fn new() -> Market {
-        Market { slots: vec![Slot::default(); 1 << 10], origins: Vec::new(), queue: BinaryHeap::new(), open: false }
+    /// A market with room for so many divisors.
+    pub fn new(room: usize) -> Market {
+        let table = vec![(0, VACANT); (2 * room).next_power_of_two().max(64)];
+        Market { listings: Vec::with_capacity(room), table, queue: Vec::new(), open: false }
     }
 
     /// The place of `key` or where it belongs.
     fn place(&self, key: u64) -> usize {
-        let mask = self.slots.len() - 1;
+        let mask = self.table.len() - 1;
         let mut at = key as usize & mask;
-        while self.slots[at].key != key && self.slots[at].key != 0 {
+        loop {
+            let (half, number) = self.table[at];
+            if number == VACANT || (half == (key >> 32) as u32 && self.listings[number as usize].offer.key == key) {
+                return at;
+            }
             at = (at + 1) & mask;
         }
-        at
     }
 
     fn grow(&mut self) {
-        let larger = vec![Slot::default(); 4 * self.slots.len()];
-        for slot in std::mem::replace(&mut self.slots, larger) {
-            if slot.key != 0 {
-                let at = self.place(slot.key);
-                self.slots[at] = slot;
-            }
+        let larger = vec![(0, VACANT); 2 * self.table.len()];
+        self.table = larger;
+        for number in 0..self.listings.len() {
+            let key = self.listings[number].offer.key;
+            let at = self.place(key);
+            self.table[at] = ((key >> 32) as u32, number as Number);
         }
     }
 
-    /// Adds an occurrence.
-    pub fn add(&mut self, offer: &Offer, origin: Origin) {
-        let mut at = self.place(offer.key);
-        if self.slots[at].key == 0 {
-            if 2 * self.origins.len() >= self.slots.len() {
+    /// The divisor with this key, if it has been seen.
+    fn find(&self, key: u64) -> Option<Number> {
+        let (_, number) = self.table[self.place(key)];
+        (number != VACANT).then_some(number)
+    }
+
+    /// Adds an occurrence that saves so much.
+    pub fn add(&mut self, offer: &Offer, saved: [i32; 2]) -> Number {
+        let at = self.place(offer.key);
+        let mut number = self.table[at].1;
+        if number == VACANT {
+            number = self.listings.len() as Number;
+            self.table[at] = ((offer.key >> 32) as u32, number);
+            self.listings.push(Listing { offer: *offer, saved, overcount: 0, queued: 0 });
+            if 2 * self.listings.len() > self.table.len() {
                 self.grow();
-                at = self.place(offer.key);
             }
-            let age = self.origins.len() as u32;
-            self.origins.push(origin);
-            self.slots[at] = Slot { key: offer.key, cost: offer.cost.map(|c| c as i16), age, ..Slot::default() };
+        } else {
+            let listing = &mut self.listings[number as usize];
+            listing.saved[0] += saved[0];
+            listing.saved[1] += saved[1];
         }
-        let slot = &mut self.slots[at];
-        slot.saved[0] += offer.saved[0];
-        slot.saved[1] += offer.saved[1];
         if self.open {
-            self.queue(at);
+            self.queue(number);
         }
+        number
     }
 
     /// Takes an occurrence back.
-    pub fn take(&mut self, offer: &Offer) {
-        let at = self.place(offer.key);
-        let slot = &mut self.slots[at];
-        slot.saved[0] -= offer.saved[0];
-        slot.saved[1] -= offer.saved[1];
+    pub fn take(&mut self, number: Number, saved: [i32; 2]) {
+        let listing = &mut self.listings[number as usize];
+        listing.saved[0] -= saved[0];
+        listing.saved[1] -= saved[1];
+    }
+
+    /// Takes an occurrence back of which only the key is known.
+    pub fn take_by_key(&mut self, key: u64, saved: [i32; 2]) {
+        if let Some(number) = self.find(key) {
+            self.take(number, saved);
+        }
     }
 
     pub fn open(&mut self) {
         self.open = true;
-        (0..self.slots.len()).for_each(|at| self.queue(at));
+        (0..self.listings.len() as Number).for_each(|number| self.queue(number));
     }
 
-    fn queue(&mut self, at: usize) {
-        let slot = &mut self.slots[at];
-        let gain = slot.gain();
-        if gain > slot.queued {
-            slot.queued = gain;
-            self.queue.push((gain, Reverse(slot.age), slot.key));
+    fn queue(&mut self, number: Number) {
+        let listing = &mut self.listings[number as usize];
+        let gain = listing.gain();
+        if gain > listing.queued {
+            listing.queued = gain;
+            let gain = gain as usize;
+            if self.queue.len() <= gain {
+                self.queue.resize_with(gain + 1, BinaryHeap::new);
+            }
+            self.queue[gain].push(Reverse(number));
         }
     }
 
-    /// The divisor that saves most.
+    /// The divisor that saves most, the oldest of these.
     pub fn best(&mut self) -> Option<Best> {
-        while let Some((gain, _, key)) = self.queue.pop() {
-            let at = self.place(key);
-            let slot = &mut self.slots[at];
-            if gain == slot.queued {
-                slot.queued = 0;
-                if slot.gain() == gain {
-                    return Some(Best { key, origin: self.origins[slot.age as usize], gain });
+        while let (gain, Some(highest)) = (self.queue.len() as i32 - 1, self.queue.last_mut()) {
+            let Some(Reverse(number)) = highest.pop() else {
+                self.queue.pop();
+                continue;
+            };
+            let listing = &mut self.listings[number as usize];
+            if gain == listing.queued {
+                listing.queued = 0;
+                if listing.gain() == gain {
+                    return Some(Best { number, origin: listing.offer.origin, gain });
                 }
-                self.queue(at);
+                self.queue(number);
             }
         }
         None
     }
 
+    /// Factors of the first part of a pair.
+    pub fn first(&self, number: Number) -> usize {
+        usize::from(self.listings[number as usize].offer.first)
+    }
+
     /// What the occurrences of a divisor save in all.
     pub fn saved(&self, key: u64) -> i32 {
-        self.slots[self.place(key)].saved[0]
+        self.find(key).map_or(0, |number| self.listings[number as usize].saved[0])
     }
 
     /// `best` turned out to gain less, since some occurrences overlap.
     pub fn correct(&mut self, best: &Best, gain: i32) {
-        let at = self.place(best.key);
-        self.slots[at].overcount += best.gain - gain;
-        self.queue(at);
+        self.listings[best.number as usize].overcount += best.gain - gain;
+        self.queue(best.number);
     }
 }
