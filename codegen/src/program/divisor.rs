@@ -4,7 +4,7 @@
 //! product is the sum of its factors' hashes, so that a quotient's is a difference. Where a hash
 //! decides about a rewriting, the factors themselves are compared too.
 
-use super::market::{Offer, Origin};
+use super::market::Origin;
 use super::{Id, Sum, Term};
 use smallvec::SmallVec;
 
@@ -21,30 +21,34 @@ pub enum Divisor {
     Scaled(Id, f64),
 }
 
-/// A term with the hash of its factors.
-#[derive(Clone, Debug)]
+/// What decides about a term, at a glance.
+#[derive(Clone, Copy, Debug)]
 pub struct Item {
     pub coefficient: f64,
-    pub factors: Factors,
     pub hash: u64,
     /// Which nodes can occur among the factors: a bit per node modulo 64.
     marks: u64,
+    length: u16,
+    /// Multiplications to evaluate it.
+    cost: u16,
+    /// Whether one of them is by the coefficient.
+    scaled: bool,
     /// Whether a node occurs twice.
     repeats: bool,
 }
 
 /// What two terms of a sum have in common: the hash of their common factors and how many there are.
 #[derive(Clone, Copy, Default)]
-struct Shared {
+pub struct Shared {
     hash: u64,
     count: usize,
 }
 
-/// Finds what other terms have in common with one.
-pub struct Comparison<'a> {
-    item: &'a Item,
-    /// The hash of each node that the term contains, 0 for others.
-    hashes: &'a mut [u64],
+/// Two terms of a sum, of which the first comes first in their divisor.
+pub struct Pair<'a> {
+    first: &'a Item,
+    second: &'a Item,
+    shared: usize,
 }
 
 /// SplitMix64: spreads consecutive numbers over all bits.
@@ -93,16 +97,20 @@ pub fn cost(coefficient: f64, factors: usize) -> i32 {
 }
 
 impl Item {
-    pub fn new(coefficient: f64, mut factors: Factors) -> Item {
-        factors.sort_unstable();
-        let hash = hash_of(&factors);
-        let marks = marks_of(&factors);
-        let repeats = factors.windows(2).any(|w| w[0] == w[1]);
-        Item { coefficient, factors, hash, marks, repeats }
+    pub fn new(coefficient: f64, factors: &[Id]) -> Item {
+        Item {
+            coefficient,
+            hash: hash_of(factors),
+            marks: marks_of(factors),
+            length: factors.len() as u16,
+            cost: cost(coefficient, factors.len()) as u16,
+            scaled: coefficient.abs() != 1.0,
+            repeats: factors.windows(2).any(|w| w[0] == w[1]),
+        }
     }
 
     pub fn cost(&self) -> i32 {
-        cost(self.coefficient, self.factors.len())
+        i32::from(self.cost)
     }
 
     /// Whether it may have all factors with these marks.
@@ -110,15 +118,12 @@ impl Item {
         self.marks & marks == marks
     }
 
-    /// Divisors within this term, numbered `number`, and what each saves here.
-    pub fn offers(&self, number: u32, mut found: impl FnMut(Offer, [i32; 2])) {
-        let f = &self.factors;
-        let mut offer = |key, origin, saved| found(Offer { key, origin, cost: [1; 2], first: 0 }, [saved; 2]);
-        let scaled = self.coefficient.abs() != 1.0;
+    /// Divisors within this term, with their keys and how often they can be extracted.
+    pub fn offers(&self, f: &[Id], number: u32, mut found: impl FnMut(u64, Origin, i32)) {
         for (i, a) in f.iter().enumerate() {
             let repeated = i > 0 && f[i - 1] == *a;
-            if !repeated && scaled {
-                offer(scaled_key(*a, self.coefficient.abs()), Origin::Scaled(*a, number), 1);
+            if !repeated && self.scaled {
+                found(scaled_key(*a, self.coefficient.abs()), Origin::Scaled(*a, number), 1);
             }
             let hash = hash_of_node(*a);
             for (j, b) in f.iter().enumerate().skip(i + 1) {
@@ -132,104 +137,111 @@ impl Item {
                     let count = |id: &Id| f.iter().filter(|other| *other == id).count() as i32;
                     times = if a == b { count(a) / 2 } else { count(a).min(count(b)) };
                 }
-                let key = mix(hash.wrapping_add(hash_of_node(*b)) ^ 1);
-                offer(key, Origin::Product(*a, *b), times);
+                found(mix(hash.wrapping_add(hash_of_node(*b)) ^ 1), Origin::Product(*a, *b), times);
             }
         }
     }
 
-    fn shared(&self, other: &Item) -> Shared {
-        let mut shared = Shared::default();
-        let (a, b) = (&self.factors[..], &other.factors[..]);
-        let (mut i, mut j) = (0, 0);
-        while i < a.len() && j < b.len() {
-            match a[i].cmp(&b[j]) {
-                std::cmp::Ordering::Equal => {
-                    shared.hash = shared.hash.wrapping_add(hash_of_node(a[i]));
-                    shared.count += 1;
-                    i += 1;
-                    j += 1;
-                }
-                std::cmp::Ordering::Less => i += 1,
-                std::cmp::Ordering::Greater => j += 1,
-            }
-        }
-        shared
-    }
-
-    /// What this term, first in a pair, and another save if the pair with `shared` common factors is replaced.
-    pub fn saved(&self, other: &Item, shared: usize) -> [i32; 2] {
-        let before = self.cost() + other.cost() + 1;
-        [before - cost(self.coefficient, shared + 1), before - cost(other.coefficient, shared + 1)]
-    }
-}
-
-impl<'a> Comparison<'a> {
-    /// `hashes` has a zero for every node.
-    pub fn new(item: &'a Item, hashes: &'a mut [u64]) -> Comparison<'a> {
-        item.factors.iter().for_each(|id| hashes[*id as usize] = hash_of_node(*id));
-        Comparison { item, hashes }
-    }
-
-    fn shared(&self, other: &Item) -> Shared {
-        if self.item.marks & other.marks == 0 {
+    /// What this term has in common with another, by the hashes of its own factors; `other` are the other's.
+    #[inline]
+    pub fn shared(&self, f: &[Id], hashes: &[u64], item: &Item, other: &[Id]) -> Shared {
+        if self.marks & item.marks == 0 {
             Shared::default()
-        } else if other.repeats {
-            self.item.shared(other)
+        } else if item.repeats {
+            shared(f, other)
         } else {
             let mut shared = Shared::default();
-            for id in &other.factors {
-                let hash = self.hashes[*id as usize];
+            for id in other {
+                let hash = hashes[*id as usize];
                 shared.hash = shared.hash.wrapping_add(hash);
                 shared.count += usize::from(hash != 0);
             }
             shared
         }
     }
-
-    /// The pair of another term and this one, whether the other comes first in it, and what it saves.
-    pub fn offer_with(&self, other: &Item, numbers: [u32; 2]) -> (Offer, bool, [i32; 2]) {
-        let item = self.item;
-        let Shared { hash, count } = self.shared(other);
-        let (h1, h2) = (other.hash.wrapping_sub(hash), item.hash.wrapping_sub(hash));
-        let ordered = h1 <= h2;
-        let (x, y, h1, h2) = if ordered { (other, item, h1, h2) } else { (item, other, h2, h1) };
-        let (n1, n2) = (x.factors.len() - count, y.factors.len() - count);
-        let ratio = exact(y.coefficient / x.coefficient);
-        let key = mix(h1.wrapping_add(mix(h2 ^ mix(rounded(ratio)))) ^ 2);
-        let products = n1.saturating_sub(1) as i32 + n2.saturating_sub(1) as i32 + 1;
-        let scale = |factors: usize| i32::from(factors > 0 && !is_unit(ratio));
-        let [first, second] = numbers;
-        let offer = Offer {
-            key,
-            origin: Origin::Pair(first, second),
-            cost: [products + scale(n2), products + scale(n1)],
-            first: n1 as u16,
-        };
-        (offer, ordered, x.saved(y, count))
-    }
 }
 
-impl Drop for Comparison<'_> {
-    fn drop(&mut self) {
-        self.item.factors.iter().for_each(|id| self.hashes[*id as usize] = 0);
+/// The hash of each node that a term contains, 0 for others.
+pub fn set_hashes(hashes: &mut [u64], factors: &[Id]) {
+    factors.iter().for_each(|id| hashes[*id as usize] = hash_of_node(*id));
+}
+
+pub fn reset_hashes(hashes: &mut [u64], factors: &[Id]) {
+    factors.iter().for_each(|id| hashes[*id as usize] = 0);
+}
+
+fn shared(a: &[Id], b: &[Id]) -> Shared {
+    let mut shared = Shared::default();
+    let (mut i, mut j) = (0, 0);
+    while i < a.len() && j < b.len() {
+        match a[i].cmp(&b[j]) {
+            std::cmp::Ordering::Equal => {
+                shared.hash = shared.hash.wrapping_add(hash_of_node(a[i]));
+                shared.count += 1;
+                i += 1;
+                j += 1;
+            }
+            std::cmp::Ordering::Less => i += 1,
+            std::cmp::Ordering::Greater => j += 1,
+        }
+    }
+    shared
+}
+
+impl<'a> Pair<'a> {
+    /// The pair, its key, and whether the older term comes first in it.
+    #[inline]
+    pub fn new(older: &'a Item, newer: &'a Item, shared: Shared) -> (Pair<'a>, u64, bool) {
+        let (h1, h2) = (older.hash.wrapping_sub(shared.hash), newer.hash.wrapping_sub(shared.hash));
+        let ordered = h1 <= h2;
+        let (first, second, h1, h2) = if ordered { (older, newer, h1, h2) } else { (newer, older, h2, h1) };
+        let pair = Pair { first, second, shared: shared.count };
+        let parts = h1.wrapping_mul(0xD6E8_FEB8_6659_FD93).wrapping_add(h2.rotate_left(23));
+        let key = mix(parts.wrapping_add(rounded(pair.ratio()).wrapping_mul(0x9E37_79B9_7F4A_7C15)));
+        (pair, key, ordered)
+    }
+
+    /// A pair whose first part is known to have so many factors.
+    pub fn again(first: &'a Item, second: &'a Item, length: u16) -> Pair<'a> {
+        Pair { first, second, shared: usize::from(first.length - length) }
+    }
+
+    fn ratio(&self) -> f64 {
+        exact(self.second.coefficient / self.first.coefficient)
+    }
+
+    /// Operations that a definition costs, with the first or the second part's coefficient 1, and the first part's factors.
+    pub fn definition(&self) -> ([i32; 2], u16) {
+        let [n1, n2] = [self.first, self.second].map(|item| usize::from(item.length) - self.shared);
+        let products = n1.saturating_sub(1) as i32 + n2.saturating_sub(1) as i32 + 1;
+        let scaled = self.ratio().abs() != 1.0;
+        let scale = |factors: usize| i32::from(factors > 0 && scaled);
+        ([products + scale(n2), products + scale(n1)], n1 as u16)
+    }
+
+    /// Operations that it saves to replace it, with the first or the second part's coefficient 1.
+    #[inline]
+    pub fn saved(&self) -> [i32; 2] {
+        let saved = self.first.cost() + self.second.cost() + 1 - self.shared as i32;
+        [saved - i32::from(self.first.scaled), saved - i32::from(self.second.scaled)]
     }
 }
 
 /// The factors of `a` that `b` does not have.
 fn quotient(a: &[Id], b: &[Id]) -> Factors {
+    let mut rest = Factors::with_capacity(a.len());
     let mut j = 0;
-    a.iter()
-        .filter(|id| {
-            while j < b.len() && b[j] < **id {
-                j += 1;
-            }
-            let shared = j < b.len() && b[j] == **id;
-            j += usize::from(shared);
-            !shared
-        })
-        .copied()
-        .collect()
+    for id in a {
+        while j < b.len() && b[j] < *id {
+            j += 1;
+        }
+        if j < b.len() && b[j] == *id {
+            j += 1;
+        } else {
+            rest.push(*id);
+        }
+    }
+    rest
 }
 
 /// `factors` without those listed, if it has them all.
@@ -239,13 +251,14 @@ pub fn without(factors: &[Id], remove: &[Id]) -> Option<Factors> {
 }
 
 impl Divisor {
-    /// What two terms have in common.
-    pub fn pair(a: &Item, b: &Item) -> Divisor {
-        let hash = a.shared(b).hash;
-        let ordered = a.hash.wrapping_sub(hash) <= b.hash.wrapping_sub(hash);
-        let (x, y) = if ordered { (a, b) } else { (b, a) };
-        let ratio = exact(y.coefficient / x.coefficient);
-        Divisor::Pair { first: quotient(&x.factors, &y.factors), second: quotient(&y.factors, &x.factors), ratio }
+    /// What remains of two terms without their common factors.
+    pub fn pair(a: (f64, &[Id]), b: (f64, &[Id])) -> Divisor {
+        let (first, second) = (quotient(a.1, b.1), quotient(b.1, a.1));
+        if hash_of(&first) <= hash_of(&second) {
+            Divisor::Pair { first, second, ratio: exact(b.0 / a.0) }
+        } else {
+            Divisor::Pair { first: second, second: first, ratio: exact(a.0 / b.0) }
+        }
     }
 
     /// The nodes that it is made of.

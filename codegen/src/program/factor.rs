@@ -6,7 +6,8 @@
 //! sums becomes a node of its own, and the search goes on until none saves any.
 
 use super::divisor::{
-    Comparison, Divisor, Factors, Item, cost, exact, hash_of, marks_of, rounded, scaled_key, without,
+    Divisor, Factors, Item, Pair, cost, exact, hash_of, marks_of, reset_hashes, rounded, scaled_key, set_hashes,
+    without,
 };
 use super::market::{Best, Market, Number, Origin};
 use super::{Id, Node, Program, Term};
@@ -16,27 +17,38 @@ use std::collections::HashMap;
 struct Search<'a> {
     nodes: &'a mut Vec<Node>,
     /// All terms there ever were.
-    items: Vec<Item>,
-    sums: Vec<Terms>,
+    terms: Vec<Term>,
+    sums: Vec<Sum>,
+    /// Rows of `Entry`s.
+    offered: Vec<Offered>,
     /// Sums in which a node occurs or has occurred.
     places: Vec<Vec<u32>>,
     market: Market,
-    /// A zero per node, for comparisons.
+    /// A zero for every node, but while a term is compared with others.
     hashes: Vec<u64>,
 }
 
-/// The terms of a sum.
+/// The terms that a sum has.
 #[derive(Default)]
-struct Terms {
-    /// Their indices, and their numbers among all terms that the sum ever had.
-    now: Vec<(u32, u32)>,
-    /// For each of these a row with the divisors that it is with those before it.
-    pairs: Vec<Vec<Pair>>,
+struct Sum {
+    entries: Vec<Entry>,
+    /// How many it ever had.
+    births: u32,
 }
 
-/// A divisor, and whether the older of its two terms comes first in it.
+#[derive(Clone, Copy)]
+struct Entry {
+    item: Item,
+    term: u32,
+    /// Its number among all terms that the sum ever had.
+    birth: u32,
+    /// Where the divisors begin that it is with those born before it.
+    row: u32,
+}
+
+/// What a pair of terms has offered: a divisor, and whether the older of the two comes first in it.
 #[derive(Clone, Copy, Default)]
-struct Pair(Number);
+struct Offered(Number);
 
 /// An occurrence in a sum: which terms go, what takes their place.
 struct Rewrite {
@@ -54,29 +66,27 @@ pub fn factor(program: &mut Program) {
         places: vec![Vec::new(); program.nodes.len()],
         hashes: vec![0; program.nodes.len()],
         nodes: &mut program.nodes,
-        items: Vec::new(),
-        sums: program.sums.iter().map(|_| Terms::default()).collect(),
+        terms: Vec::new(),
+        sums: program.sums.iter().map(|_| Sum::default()).collect(),
+        offered: Vec::with_capacity(pairs),
         market: Market::new(pairs),
     };
     for (sum, terms) in program.sums.iter().enumerate() {
-        terms.iter().for_each(|t| search.insert(sum, Item::new(t.coefficient, t.factors.clone())));
+        terms.iter().for_each(|t| search.insert(sum, t.coefficient, t.factors.clone()));
     }
     search.market.open();
     while let Some(best) = search.market.best() {
         search.extract(&best);
     }
-    let term = |(i, _): &(u32, u32)| {
-        let item = &search.items[*i as usize];
-        Term { coefficient: item.coefficient, factors: item.factors.clone() }
-    };
-    program.sums = search.sums.iter().map(|terms| terms.now.iter().map(term).collect()).collect();
+    let term = |entry: &Entry| search.terms[entry.term as usize].clone();
+    program.sums = search.sums.iter().map(|sum| sum.entries.iter().map(term).collect()).collect();
     program.sums.iter_mut().for_each(|sum| sum.sort_by(|a, b| a.factors.cmp(&b.factors)));
     merge_equal_sums(program);
 }
 
-impl Pair {
-    fn new(number: Number, ordered: bool) -> Pair {
-        Pair(number << 1 | u32::from(ordered))
+impl Offered {
+    fn new(number: Number, ordered: bool) -> Offered {
+        Offered(number << 1 | u32::from(ordered))
     }
 
     fn number(self) -> Number {
@@ -90,54 +100,59 @@ impl Pair {
 
 impl Search<'_> {
     /// Adds a term to a sum, with all that it offers.
-    fn insert(&mut self, sum: usize, item: Item) {
-        let new = self.items.len() as u32;
-        item.offers(new, |offer, saved| {
-            self.market.add(&offer, saved);
+    fn insert(&mut self, sum: usize, coefficient: f64, mut factors: Factors) {
+        factors.sort_unstable();
+        let item = Item::new(coefficient, &factors);
+        let term = self.terms.len() as u32;
+        item.offers(&factors, term, |key, origin, times| {
+            self.market.add(key, [times; 2], origin, || ([1; 2], 0));
         });
-        let terms = &mut self.sums[sum];
-        let birth = terms.pairs.len();
-        let mut row = vec![Pair::default(); birth];
-        let comparison = Comparison::new(&item, &mut self.hashes);
-        for (other, other_birth) in &terms.now {
-            let (offer, ordered, saved) = comparison.offer_with(&self.items[*other as usize], [*other, new]);
-            row[*other_birth as usize] = Pair::new(self.market.add(&offer, saved), ordered);
+        let Sum { entries, births } = &mut self.sums[sum];
+        let row = self.offered.len();
+        self.offered.resize(row + *births as usize, Offered::default());
+        let offered = &mut self.offered[row..];
+        set_hashes(&mut self.hashes, &factors);
+        for other in entries.iter() {
+            let shared = item.shared(&factors, &self.hashes, &other.item, &self.terms[other.term as usize].factors);
+            let (pair, key, ordered) = Pair::new(&other.item, &item, shared);
+            let origin = Origin::Pair(other.term, term);
+            let number = self.market.add(key, pair.saved(), origin, || pair.definition());
+            offered[other.birth as usize] = Offered::new(number, ordered);
         }
-        drop(comparison);
-        terms.pairs.push(row);
-        terms.now.push((new, birth as u32));
-        for id in &item.factors {
+        reset_hashes(&mut self.hashes, &factors);
+        entries.push(Entry { item, term, birth: *births, row: row as u32 });
+        *births += 1;
+        for id in &factors {
             let places = &mut self.places[*id as usize];
             if places.last() != Some(&(sum as u32)) {
                 places.push(sum as u32);
             }
         }
-        self.items.push(item);
+        self.terms.push(Term { coefficient, factors });
     }
 
     /// Takes a term out of a sum, with all that it offered.
     fn remove(&mut self, sum: usize, at: usize) {
-        let terms = &mut self.sums[sum];
-        let (number, birth) = terms.now.swap_remove(at);
-        let item = &self.items[number as usize];
-        item.offers(number, |offer, saved| self.market.take_by_key(offer.key, saved));
-        for (other, other_birth) in &terms.now {
-            let (early, late) = (birth.min(*other_birth), birth.max(*other_birth));
-            let pair = terms.pairs[late as usize][early as usize];
-            let other = &self.items[*other as usize];
-            let (x, y) = if (birth == early) == pair.ordered() { (item, other) } else { (other, item) };
-            let shared = x.factors.len() - self.market.first(pair.number());
-            self.market.take(pair.number(), x.saved(y, shared));
+        let entries = &mut self.sums[sum].entries;
+        let gone = entries.swap_remove(at);
+        let factors = &self.terms[gone.term as usize].factors;
+        gone.item.offers(factors, gone.term, |key, _, times| self.market.take_by_key(key, [times; 2]));
+        for other in entries.iter() {
+            let (older, newer) = if gone.birth < other.birth { (&gone, other) } else { (other, &gone) };
+            let offered = self.offered[(newer.row + older.birth) as usize];
+            let (first, second) = if offered.ordered() { (older, newer) } else { (newer, older) };
+            let pair = Pair::again(&first.item, &second.item, self.market.first(offered.number()));
+            self.market.take(offered.number(), pair.saved());
         }
-        terms.pairs[birth as usize] = Vec::new();
     }
 
     fn divisor(&self, origin: Origin) -> Divisor {
-        let item = |i: u32| &self.items[i as usize];
+        let coefficient = |i: u32| self.terms[i as usize].coefficient;
+        let term = |i: u32| (coefficient(i), &self.terms[i as usize].factors[..]);
         match origin {
-            Origin::Pair(i, j) => Divisor::pair(item(i), item(j)),
+            Origin::Pair(i, j) => Divisor::pair(term(i), term(j)),
             Origin::Product(a, b) => Divisor::Product(a, b),
-            Origin::Scaled(a, i) => Divisor::Scaled(a, item(i).coefficient.abs()),
+            Origin::Scaled(a, i) => Divisor::Scaled(a, coefficient(i).abs()),
         }
     }
 
@@ -162,12 +177,12 @@ impl Search<'_> {
             let mut gone: Vec<usize> = list.iter().flat_map(|r| r.gone.iter().copied()).collect();
             gone.sort_unstable();
             gone.into_iter().rev().for_each(|at| self.remove(list[0].sum, at));
-            list.iter().for_each(|r| self.insert(r.sum, Item::new(exact(r.coefficient / scale), r.factors.clone())));
+            list.iter().for_each(|r| self.insert(r.sum, exact(r.coefficient / scale), r.factors.clone()));
         }
         let new = self.sums.len();
-        self.sums.push(Terms::default());
+        self.sums.push(Sum::default());
         for term in divisor.definition(scale) {
-            self.insert(new, Item::new(term.coefficient, term.factors));
+            self.insert(new, term.coefficient, term.factors);
         }
     }
 
@@ -188,7 +203,7 @@ impl Search<'_> {
     fn gain(&self, divisor: &Divisor, found: &[Rewrite], scale: f64) -> i32 {
         let mut gain = 0;
         for r in found {
-            let before: i32 = r.gone.iter().map(|at| self.items[self.sums[r.sum].now[*at].0 as usize].cost()).sum();
+            let before: i32 = r.gone.iter().map(|at| self.sums[r.sum].entries[*at].item.cost()).sum();
             gain += before + r.gone.len() as i32 - 1 - cost(exact(r.coefficient / scale), r.factors.len());
         }
         let definition = divisor.definition(scale);
@@ -205,61 +220,59 @@ impl Search<'_> {
 
     /// Occurrences of `divisor` in a sum that do not overlap.
     fn occurrences(&self, sum: usize, divisor: &Divisor, node: Id, found: &mut Vec<Rewrite>) {
-        let items = || self.sums[sum].now.iter().map(|(i, _)| &self.items[*i as usize]).enumerate();
+        let entries = &self.sums[sum].entries;
+        let factors = |entry: &Entry| &self.terms[entry.term as usize].factors;
+        let containing = |marks: u64| entries.iter().enumerate().filter(move |(_, e)| e.item.may_contain(marks));
         match divisor {
             Divisor::Product(a, b) => {
-                let marks = marks_of(&[*a, *b]);
-                for (i, item) in items().filter(|(_, item)| item.may_contain(marks)) {
-                    let mut factors = item.factors.clone();
+                for (i, entry) in containing(marks_of(&[*a, *b])) {
+                    let mut rest = factors(entry).clone();
                     let mut times = 0;
-                    while let Some(rest) = without(&factors, &[*a, *b]) {
-                        factors = rest;
+                    while let Some(less) = without(&rest, &[*a, *b]) {
+                        rest = less;
                         times += 1;
                     }
                     if times > 0 {
-                        factors.extend(std::iter::repeat_n(node, times));
-                        found.push(Rewrite {
-                            sum,
-                            gone: [i].as_slice().into(),
-                            coefficient: item.coefficient,
-                            factors,
-                        });
+                        rest.extend(std::iter::repeat_n(node, times));
+                        let gone = [i].as_slice().into();
+                        found.push(Rewrite { sum, gone, coefficient: entry.item.coefficient, factors: rest });
                     }
                 }
             }
             Divisor::Scaled(a, size) => {
-                for (i, item) in items() {
-                    let coefficient = item.coefficient.abs();
+                for (i, entry) in containing(marks_of(&[*a])) {
+                    let coefficient = entry.item.coefficient.abs();
                     if coefficient == 1.0 || rounded(coefficient) != rounded(*size) {
                         continue;
                     }
-                    if let Some(mut factors) = without(&item.factors, &[*a]) {
-                        factors.push(node);
-                        let coefficient = item.coefficient.signum();
-                        found.push(Rewrite { sum, gone: [i].as_slice().into(), coefficient, factors });
+                    if let Some(mut rest) = without(factors(entry), &[*a]) {
+                        rest.push(node);
+                        let coefficient = entry.item.coefficient.signum();
+                        found.push(Rewrite { sum, gone: [i].as_slice().into(), coefficient, factors: rest });
                     }
                 }
             }
             Divisor::Pair { first, second, ratio } => {
                 let change = hash_of(second).wrapping_sub(hash_of(first));
-                let marks = marks_of(first);
-                let mut used = vec![false; self.sums[sum].now.len()];
-                for (i, item) in items().filter(|(_, item)| item.may_contain(marks)) {
-                    let Some(common) = without(&item.factors, first).filter(|_| !used[i]) else { continue };
-                    let partner = item.hash.wrapping_add(change);
-                    let fits = |j: usize, other: &Item| {
-                        other.hash == partner
-                            && !used[j]
-                            && j != i
-                            && rounded(other.coefficient / item.coefficient) == rounded(*ratio)
-                            && without(&other.factors, second).as_ref() == Some(&common)
+                let known = found.len();
+                for (i, entry) in containing(marks_of(first)) {
+                    let partner = entry.item.hash.wrapping_add(change);
+                    let fits = |other: &Entry| {
+                        other.item.hash == partner
+                            && rounded(other.item.coefficient / entry.item.coefficient) == rounded(*ratio)
                     };
-                    if let Some((j, _)) = items().find(|(j, other)| fits(*j, other)) {
-                        (used[i], used[j]) = (true, true);
-                        let mut factors = common;
-                        factors.push(node);
+                    let mut partners =
+                        entries.iter().enumerate().filter(|(j, other)| *j != i && fits(other)).peekable();
+                    if partners.peek().is_none() {
+                        continue;
+                    }
+                    let used = |at: usize| found[known..].iter().any(|r| r.gone.contains(&at));
+                    let Some(mut common) = without(factors(entry), first).filter(|_| !used(i)) else { continue };
+                    let same = |other: &Entry| without(factors(other), second).as_ref() == Some(&common);
+                    if let Some((j, _)) = partners.find(|(j, other)| !used(*j) && same(other)) {
+                        common.push(node);
                         let gone = [i, j].as_slice().into();
-                        found.push(Rewrite { sum, gone, coefficient: item.coefficient, factors });
+                        found.push(Rewrite { sum, gone, coefficient: entry.item.coefficient, factors: common });
                     }
                 }
             }
@@ -269,11 +282,16 @@ impl Search<'_> {
 
 /// Sums that became equal are computed once.
 fn merge_equal_sums(program: &mut Program) {
-    let mut known: HashMap<Vec<(u64, &Factors)>, usize> = HashMap::new();
+    let mut known: HashMap<u64, Vec<usize>> = HashMap::new();
     let mut first = Vec::with_capacity(program.sums.len());
     for (s, sum) in program.sums.iter().enumerate() {
-        let key = sum.iter().map(|t| (t.coefficient.to_bits(), &t.factors)).collect();
-        first.push(*known.entry(key).or_insert(s));
+        let hash = sum.iter().fold(0u64, |hash, t| hash.rotate_left(5) ^ hash_of(&t.factors) ^ t.coefficient.to_bits());
+        let alike = known.entry(hash).or_default();
+        let same = alike.iter().copied().find(|other| program.sums[*other] == *sum);
+        first.push(same.unwrap_or(s));
+        if same.is_none() {
+            alike.push(s);
+        }
     }
     for node in program.nodes.iter_mut() {
         if let Node::Sin(s) | Node::Cos(s) | Node::Value(s) | Node::Reciprocal(s) = node {

@@ -16,22 +16,16 @@ pub enum Origin {
     Scaled(Id, u32),
 }
 
-/// What is known of a divisor from its first occurrence.
-#[derive(Clone, Copy)]
-pub struct Offer {
-    pub key: u64,
-    pub origin: Origin,
-    /// Operations that a definition costs, with the first or the second part's coefficient 1.
-    pub cost: [i32; 2],
-    /// Factors of a pair's first part.
-    pub first: u16,
-}
-
 /// A divisor, by the order in which they were first seen.
 pub type Number = u32;
 
 struct Listing {
-    offer: Offer,
+    key: u64,
+    origin: Origin,
+    /// Operations that a definition costs, with the first or the second part's coefficient 1.
+    cost: [i32; 2],
+    /// Factors of a pair's first part.
+    first: u16,
     /// What its occurrences save in all, for either choice of the coefficient that is 1.
     saved: [i32; 2],
     /// What occurrences that overlap, so that not all can be replaced, were found to count too much.
@@ -43,7 +37,7 @@ struct Listing {
 impl Listing {
     /// Operations saved if all occurrences are replaced, less what the divisor costs.
     fn gain(&self) -> i32 {
-        let with = |unit: usize| self.saved[unit] - self.offer.cost[unit];
+        let with = |unit: usize| self.saved[unit] - self.cost[unit];
         with(0).max(with(1)) - self.overcount
     }
 }
@@ -55,13 +49,44 @@ pub struct Best {
     pub gain: i32,
 }
 
+/// Divisors of one gain, to be taken the oldest first.
+#[derive(Default)]
+struct Level {
+    /// Those that came in order, and how many of them are taken.
+    sorted: Vec<Number>,
+    taken: usize,
+    others: BinaryHeap<Reverse<Number>>,
+}
+
+impl Level {
+    fn push(&mut self, number: Number) {
+        if self.sorted.last().is_none_or(|last| *last < number) {
+            self.sorted.push(number);
+        } else {
+            self.others.push(Reverse(number));
+        }
+    }
+
+    fn pop(&mut self) -> Option<Number> {
+        let next = self.sorted.get(self.taken).copied();
+        match (next, self.others.peek()) {
+            (Some(next), Some(Reverse(other))) if other < &next => self.others.pop().map(|Reverse(number)| number),
+            (Some(next), _) => {
+                self.taken += 1;
+                Some(next)
+            }
+            (None, _) => self.others.pop().map(|Reverse(number)| number),
+        }
+    }
+}
+
 /// All divisors that the sums offer.
 pub struct Market {
     listings: Vec<Listing>,
     /// Open addressing: half a key and the divisor's number; the length is a power of two.
     table: Vec<(u32, Number)>,
-    /// The divisors of each gain, oldest first. Gains may be out of date: too high, never too low.
-    queue: Vec<BinaryHeap<Reverse<Number>>>,
+    /// The divisors of each gain. Gains may be out of date: too high, never too low.
+    queue: Vec<Level>,
     /// Whether the queue is kept up to date.
     open: bool,
 }
@@ -81,7 +106,7 @@ impl Market {
         let mut at = key as usize & mask;
         loop {
             let (half, number) = self.table[at];
-            if number == VACANT || (half == (key >> 32) as u32 && self.listings[number as usize].offer.key == key) {
+            if number == VACANT || (half == (key >> 32) as u32 && self.listings[number as usize].key == key) {
                 return at;
             }
             at = (at + 1) & mask;
@@ -92,7 +117,7 @@ impl Market {
         let larger = vec![(0, VACANT); 2 * self.table.len()];
         self.table = larger;
         for number in 0..self.listings.len() {
-            let key = self.listings[number].offer.key;
+            let key = self.listings[number].key;
             let at = self.place(key);
             self.table[at] = ((key >> 32) as u32, number as Number);
         }
@@ -104,14 +129,16 @@ impl Market {
         (number != VACANT).then_some(number)
     }
 
-    /// Adds an occurrence that saves so much.
-    pub fn add(&mut self, offer: &Offer, saved: [i32; 2]) -> Number {
-        let at = self.place(offer.key);
+    /// Adds an occurrence that saves so much. `cost` tells what a definition costs and the factors of its first part.
+    #[inline]
+    pub fn add(&mut self, key: u64, saved: [i32; 2], origin: Origin, cost: impl FnOnce() -> ([i32; 2], u16)) -> Number {
+        let at = self.place(key);
         let mut number = self.table[at].1;
         if number == VACANT {
             number = self.listings.len() as Number;
-            self.table[at] = ((offer.key >> 32) as u32, number);
-            self.listings.push(Listing { offer: *offer, saved, overcount: 0, queued: 0 });
+            self.table[at] = ((key >> 32) as u32, number);
+            let (cost, first) = cost();
+            self.listings.push(Listing { key, origin, cost, first, saved, overcount: 0, queued: 0 });
             if 2 * self.listings.len() > self.table.len() {
                 self.grow();
             }
@@ -145,6 +172,7 @@ impl Market {
         (0..self.listings.len() as Number).for_each(|number| self.queue(number));
     }
 
+    #[inline]
     fn queue(&mut self, number: Number) {
         let listing = &mut self.listings[number as usize];
         let gain = listing.gain();
@@ -152,16 +180,16 @@ impl Market {
             listing.queued = gain;
             let gain = gain as usize;
             if self.queue.len() <= gain {
-                self.queue.resize_with(gain + 1, BinaryHeap::new);
+                self.queue.resize_with(gain + 1, Level::default);
             }
-            self.queue[gain].push(Reverse(number));
+            self.queue[gain].push(number);
         }
     }
 
     /// The divisor that saves most, the oldest of these.
     pub fn best(&mut self) -> Option<Best> {
         while let (gain, Some(highest)) = (self.queue.len() as i32 - 1, self.queue.last_mut()) {
-            let Some(Reverse(number)) = highest.pop() else {
+            let Some(number) = highest.pop() else {
                 self.queue.pop();
                 continue;
             };
@@ -169,7 +197,7 @@ impl Market {
             if gain == listing.queued {
                 listing.queued = 0;
                 if listing.gain() == gain {
-                    return Some(Best { number, origin: listing.offer.origin, gain });
+                    return Some(Best { number, origin: listing.origin, gain });
                 }
                 self.queue(number);
             }
@@ -178,8 +206,8 @@ impl Market {
     }
 
     /// Factors of the first part of a pair.
-    pub fn first(&self, number: Number) -> usize {
-        usize::from(self.listings[number as usize].offer.first)
+    pub fn first(&self, number: Number) -> u16 {
+        self.listings[number as usize].first
     }
 
     /// What the occurrences of a divisor save in all.
