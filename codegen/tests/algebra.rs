@@ -4,7 +4,7 @@
 //! polynomial, or the program needs the operations that the law promises.
 
 use piaffe_codegen::dynamics::Kernel;
-use piaffe_codegen::expr::{Poly, Ring, Var};
+use piaffe_codegen::expr::{Poly, Ring, Var, laws};
 use piaffe_codegen::program::Program;
 use proptest::prelude::*;
 use std::ops::{Add, Mul, Neg, Sub};
@@ -16,6 +16,9 @@ enum Term {
     Symbol(usize),
     Sin(usize),
     Cos(usize),
+    /// Of the sum of the first two symbols.
+    SinOfSum,
+    CosOfSum,
     Sum(Box<Term>, Box<Term>),
     Product(Box<Term>, Box<Term>),
 }
@@ -52,6 +55,8 @@ impl Term {
             Term::Symbol(i) => numbers[*i],
             Term::Sin(i) => numbers[*i].sin(),
             Term::Cos(i) => numbers[*i].cos(),
+            Term::SinOfSum => (numbers[0] + numbers[1]).sin(),
+            Term::CosOfSum => (numbers[0] + numbers[1]).cos(),
             Term::Sum(a, b) => a.value(numbers) + b.value(numbers),
             Term::Product(a, b) => a.value(numbers) * b.value(numbers),
         }
@@ -63,6 +68,8 @@ impl Term {
             Term::Symbol(i) => symbols[*i].into(),
             Term::Sin(i) => ring.sin_cos(&symbols[*i..=*i]).0,
             Term::Cos(i) => ring.sin_cos(&symbols[*i..=*i]).1,
+            Term::SinOfSum => ring.sin_cos(&symbols[..2]).0,
+            Term::CosOfSum => ring.sin_cos(&symbols[..2]).1,
             Term::Sum(a, b) => &a.poly(ring, symbols) + &b.poly(ring, symbols),
             Term::Product(a, b) => &a.poly(ring, symbols) * &b.poly(ring, symbols),
         }
@@ -78,7 +85,10 @@ fn equal(left: &Term, right: &Term, terms: &usize, numbers: &[f64]) {
     assert!(close(left.value(numbers), right.value(numbers)), "no law: {left:?} = {right:?} at {numbers:?}");
     let mut ring = Ring::new();
     let symbols = NAMES.map(|name| ring.symbol(name));
-    let (l, r) = (left.poly(&mut ring, &symbols), right.poly(&mut ring, &symbols));
+    let [l, r] = [left, right].map(|side| {
+        let p = side.poly(&mut ring, &symbols);
+        ring.split_angles(&p, symbols[0])
+    });
     assert_eq!(l, r, "not rewritten");
     assert_eq!(l.len(), *terms);
 }
@@ -106,6 +116,8 @@ vocabulary! {
     w = Term::Symbol(3);
     sin = Term::Sin(0);
     cos = Term::Cos(0);
+    sin_y = Term::Sin(1);
+    cos_y = Term::Cos(1);
 }
 
 fn k(number: f64) -> Term {
@@ -114,7 +126,8 @@ fn k(number: f64) -> Term {
 
 /// One test per law.
 macro_rules! laws {
-    ($check:ident: $($(#[$law:meta])+ $name:ident($($argument:expr),+);)+) => {
+    ($list:tt, $check:ident: $($(#[$law:meta])+ $name:ident($($argument:expr),+);)+) => {
+        const $list: &[&str] = &[$(stringify!($name)),+];
         proptest! { $(
             $(#[$law])+
             #[test]
@@ -126,7 +139,7 @@ macro_rules! laws {
 }
 
 // Expressions.
-laws! { equal:
+laws! { EXPRESSIONS, equal:
     /// x + y = y + x
     sums_commute(x() + y(), y() + x(), 2);
     /// (x + y) + z = x + (y + z)
@@ -151,12 +164,16 @@ laws! { equal:
     numbers_are_folded(k(1.5) * k(2.0) + k(0.5), k(3.5), 1);
     /// sin² = 1 − cos²
     squares_of_sines(sin() * sin(), k(1.0) - cos() * cos(), 2);
+    /// sin(x + y) = sin x cos y + cos x sin y
+    sine_of_a_sum(Term::SinOfSum, sin() * cos_y() + cos() * sin_y(), 2);
+    /// cos(x + y) = cos x cos y − sin x sin y
+    cosine_of_a_sum(Term::CosOfSum, cos() * cos_y() - sin() * sin_y(), 2);
     /// sin² + cos² = 1
     sine_and_cosine_on_the_circle(y() * sin() * sin() + y() * cos() * cos(), y(), 1);
 }
 
 // Programs.
-laws! { cost:
+laws! { _, cost:
     /// x y + x z = x (y + z): 2 instead of 3
     common_factors([x() * y() + x() * z()], 2);
     /// x + y in two sums: 3 instead of 4
@@ -177,4 +194,15 @@ laws! { cost:
     terms_that_go_together([x() + y() + z(), (x() + y() + z()) * k(2.0) + w()], 4);
     /// equal sums are one
     equal_sums([x() + y() * z(), z() * y() + x()], 2);
+}
+
+/// The lists that expressions are simplified by have no law without a test.
+#[test]
+fn every_law_has_a_test() {
+    let structure = laws::OF_STRUCTURE.map(|law| law.name);
+    let terms = [laws::OF_A_TERM.map(|law| law.name), laws::OF_LIKE_TERMS.map(|law| law.name)];
+    let angles = laws::OF_SUMS_OF_ANGLES.map(|law| law.name);
+    for name in structure.iter().chain(terms.as_flattened()).chain(&angles) {
+        assert!(EXPRESSIONS.contains(name), "no test of the law `{name}`");
+    }
 }

@@ -35,9 +35,7 @@ impl Lumps {
             for atom in &moving {
                 self.rewrite_definition(ring, *atom);
             }
-            let mut factor = Poly::zero();
-            factor.add_term(moving, 1.0);
-            result += &(&self.lump(ring, coefficient) * &factor);
+            result += &(&self.lump(ring, coefficient) * &Poly::term(moving, 1.0));
         }
         result
     }

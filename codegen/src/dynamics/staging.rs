@@ -26,9 +26,7 @@ impl Early {
         let mut late = Poly::zero();
         for (monomial, early) in model.ring.staged(&split, is_late) {
             let coefficient = if model.ring.is_fixed(&early) { early } else { self.symbol(model, early) };
-            let mut factor = Poly::zero();
-            factor.add_term(monomial, 1.0);
-            late += &(&coefficient * &factor);
+            late += &(&coefficient * &Poly::term(monomial, 1.0));
         }
         late
     }

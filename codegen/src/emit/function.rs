@@ -33,8 +33,8 @@ pub fn ident(name: &str) -> Ident {
 
 impl Function<'_> {
     pub fn new<'a>(ring: &'a Ring, kernel: &'a Kernel) -> Function<'a> {
-        let program = Program::new(ring, kernel);
-        let derived = Program::as_derived(ring, kernel).operations();
+        let derived = Program::as_derived(ring, kernel);
+        let (program, derived) = (derived.factored(), derived.operations());
         let mut function = Function { ring, kernel, program, derived, source: String::new() };
         function.source = function.written();
         function

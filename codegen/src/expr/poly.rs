@@ -1,14 +1,9 @@
-//! Polynomials over atoms, kept canonical by construction.
-//!
-//! The one algebraic law built in is `sin²a = 1 − cos²a`: a monomial holds at most one factor
-//! `sin a` of each angle. Coefficients are `f64`; a sum that cancels to rounding noise is zero.
+//! Polynomials over atoms, kept canonical by the [`laws`](super::laws).
 
+use super::laws::{OF_A_TERM, OF_LIKE_TERMS};
 use smallvec::SmallVec;
-use std::collections::BTreeMap;
+use std::cmp::Ordering;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub};
-
-/// A coefficient that cancels below this share of its summands is taken to be zero.
-const CANCELLED: f64 = 1e-12;
 
 /// An atom. The two high bits mark the cosine and the sine of an angle, which share an index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -34,6 +29,11 @@ impl Var {
         (self.0 & !(Var::SIN | Var::COS)) as usize
     }
 
+    /// A number for each atom that is neither sine nor cosine (0), each sine (1) and each cosine (2).
+    pub fn place(self) -> (usize, usize) {
+        (usize::from(self.is_sin()) + 2 * usize::from(self.is_cos()), self.index())
+    }
+
     /// Whether this is `sin` of some angle.
     pub fn is_sin(self) -> bool {
         self.0 & Var::SIN != 0
@@ -44,7 +44,7 @@ impl Var {
         self.0 & Var::COS != 0
     }
 
-    fn cosine_of_same_angle(self) -> Var {
+    pub(super) fn cosine_of_same_angle(self) -> Var {
         Var(self.0 & !Var::SIN | Var::COS)
     }
 }
@@ -55,7 +55,46 @@ pub type Monomial = SmallVec<[Var; 6]>;
 /// A sum of monomials with coefficients, in canonical form.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Poly {
-    terms: BTreeMap<Monomial, f64>,
+    terms: Vec<(Monomial, f64)>,
+}
+
+/// Terms in any order, on their way to a polynomial.
+#[derive(Default)]
+pub struct Terms(Vec<(Monomial, f64)>);
+
+impl Terms {
+    /// Adds `coefficient · monomial`.
+    pub fn add(&mut self, monomial: Monomial, coefficient: f64) {
+        for law in &OF_A_TERM {
+            if let Some(rewritten) = (law.holds)(&monomial, coefficient) {
+                return rewritten.into_iter().for_each(|(m, c)| self.add(m, c));
+            }
+        }
+        self.0.push((monomial, coefficient));
+    }
+
+    /// The sum of the terms; like ones are added in the order in which they came.
+    pub fn collected(mut self) -> Poly {
+        self.0.sort_by(|(m, _), (n, _)| m.cmp(n));
+        let mut terms: Vec<(Monomial, f64)> = Vec::with_capacity(self.0.len());
+        for (monomial, coefficient) in self.0 {
+            match terms.last_mut() {
+                Some((last, sum)) if *last == monomial => {
+                    *sum = collect(*sum, coefficient);
+                    if *sum == 0.0 {
+                        terms.pop();
+                    }
+                }
+                _ => terms.push((monomial, coefficient)),
+            }
+        }
+        Poly { terms }
+    }
+}
+
+/// The number of two like terms.
+fn collect(a: f64, b: f64) -> f64 {
+    OF_LIKE_TERMS.iter().find_map(|law| (law.holds)(a, b)).unwrap_or(a + b)
 }
 
 impl Poly {
@@ -64,9 +103,7 @@ impl Poly {
     }
 
     pub fn constant(value: f64) -> Poly {
-        let mut p = Poly::zero();
-        p.add_term(Monomial::new(), value);
-        p
+        Poly::term(Monomial::new(), value)
     }
 
     pub fn is_zero(&self) -> bool {
@@ -77,7 +114,7 @@ impl Poly {
     pub fn as_constant(&self) -> Option<f64> {
         match self.terms.len() {
             0 => Some(0.0),
-            1 => self.terms.iter().next().filter(|(m, _)| m.is_empty()).map(|(_, c)| *c),
+            1 => self.terms.first().filter(|(m, _)| m.is_empty()).map(|(_, c)| *c),
             _ => None,
         }
     }
@@ -94,48 +131,53 @@ impl Poly {
         self.terms.is_empty()
     }
 
-    /// Adds `coefficient · monomial`, reducing squares of sines.
-    pub fn add_term(&mut self, mut monomial: Monomial, coefficient: f64) {
-        if coefficient == 0.0 {
-            return;
-        }
-        let square = monomial.windows(2).position(|w| w[0] == w[1] && w[0].is_sin());
-        if let Some(at) = square {
-            let cosine = monomial[at].cosine_of_same_angle();
-            monomial.remove(at);
-            monomial.remove(at);
-            let with_cosines = times(&monomial, &[cosine, cosine]);
-            self.add_term(monomial, coefficient);
-            self.add_term(with_cosines, -coefficient);
-            return;
-        }
-        use std::collections::btree_map::Entry;
-        match self.terms.entry(monomial) {
-            Entry::Vacant(e) => {
-                e.insert(coefficient);
-            }
-            Entry::Occupied(mut e) => {
-                let old = *e.get();
-                let sum = old + coefficient;
-                if sum.abs() <= CANCELLED * old.abs().max(coefficient.abs()) {
-                    e.remove();
-                } else {
-                    e.insert(sum);
+    /// The polynomial `coefficient · monomial`.
+    pub fn term(monomial: Monomial, coefficient: f64) -> Poly {
+        let mut terms = Terms::default();
+        terms.add(monomial, coefficient);
+        terms.collected()
+    }
+
+    /// The sum of both, the other times ±1.
+    fn plus(&self, other: &Poly, sign: f64) -> Poly {
+        let copy = |m: &Monomial| Monomial::from_slice(m);
+        let mut terms = Vec::with_capacity(self.len() + other.len());
+        let (mut left, mut right) = (self.terms.iter().peekable(), other.terms.iter().peekable());
+        while let (Some((m, c)), Some((n, d))) = (left.peek(), right.peek()) {
+            match m.cmp(n) {
+                Ordering::Less => {
+                    terms.push((copy(m), *c));
+                    left.next();
+                }
+                Ordering::Greater => {
+                    terms.push((copy(n), sign * d));
+                    right.next();
+                }
+                Ordering::Equal => {
+                    let sum = collect(*c, sign * d);
+                    if sum != 0.0 {
+                        terms.push((copy(m), sum));
+                    }
+                    left.next();
+                    right.next();
                 }
             }
         }
+        terms.extend(left.map(|(m, c)| (copy(m), *c)));
+        terms.extend(right.map(|(n, d)| (copy(n), sign * d)));
+        Poly { terms }
     }
 
     pub fn scaled(&self, factor: f64) -> Poly {
         if factor == 0.0 {
             return Poly::zero();
         }
-        Poly { terms: self.terms.iter().map(|(m, c)| (m.clone(), c * factor)).collect() }
+        Poly { terms: self.terms.iter().map(|(m, c)| (Monomial::from_slice(m), c * factor)).collect() }
     }
 
     /// The terms for which `keep` holds of their monomial.
     pub fn filtered(&self, keep: impl Fn(&Monomial) -> bool) -> Poly {
-        Poly { terms: self.terms.iter().filter(|(m, _)| keep(m)).map(|(m, c)| (m.clone(), *c)).collect() }
+        Poly { terms: self.terms.iter().filter(|(m, _)| keep(m)).cloned().collect() }
     }
 
     /// Equal but for rounding of the coefficients.
@@ -146,8 +188,8 @@ impl Poly {
 
     /// The factors that all terms share, and what is left without them.
     pub fn common_factors(&self) -> (Monomial, Poly) {
-        let Some(mut shared) = self.terms.keys().next().cloned() else { return (Monomial::new(), Poly::zero()) };
-        for monomial in self.terms.keys() {
+        let Some((mut shared, _)) = self.terms.first().cloned() else { return (Monomial::new(), Poly::zero()) };
+        for (monomial, _) in &self.terms {
             let mut rest = monomial.clone();
             shared.retain(|factor| rest.iter().position(|r| r == factor).map(|at| rest.remove(at)).is_some());
         }
@@ -160,12 +202,13 @@ impl Poly {
             }
             rest
         };
-        let rest = Poly { terms: self.terms.iter().map(|(m, c)| (without(m), *c)).collect() };
-        (shared, rest)
+        let mut rest = Terms::default();
+        self.terms.iter().for_each(|(m, c)| rest.add(without(m), *c));
+        (shared, rest.collected())
     }
 
     pub fn contains(&self, var: Var) -> bool {
-        self.terms.keys().any(|m| m.contains(&var))
+        self.terms.iter().any(|(m, _)| m.contains(&var))
     }
 }
 
@@ -189,37 +232,27 @@ pub(super) fn times(a: &[Var], b: &[Var]) -> Monomial {
 
 impl From<Var> for Poly {
     fn from(var: Var) -> Poly {
-        let mut p = Poly::zero();
-        p.add_term(Monomial::from_slice(&[var]), 1.0);
-        p
+        Poly { terms: vec![(Monomial::from_slice(&[var]), 1.0)] }
     }
 }
 
 impl AddAssign<&Poly> for Poly {
     fn add_assign(&mut self, rhs: &Poly) {
-        for (m, c) in rhs.terms() {
-            self.add_term(m.clone(), c);
-        }
+        *self = self.plus(rhs, 1.0);
     }
 }
 
 impl Add for &Poly {
     type Output = Poly;
     fn add(self, rhs: &Poly) -> Poly {
-        let mut sum = self.clone();
-        sum += rhs;
-        sum
+        self.plus(rhs, 1.0)
     }
 }
 
 impl Sub for &Poly {
     type Output = Poly;
     fn sub(self, rhs: &Poly) -> Poly {
-        let mut difference = self.clone();
-        for (m, c) in rhs.terms() {
-            difference.add_term(m.clone(), -c);
-        }
-        difference
+        self.plus(rhs, -1.0)
     }
 }
 
@@ -236,13 +269,13 @@ impl Mul for &Poly {
         if let Some(factor) = rhs.as_constant() {
             return self.scaled(factor);
         }
-        let mut product = Poly::zero();
+        let mut product = Terms::default();
         for (m, c) in self.terms() {
             for (n, d) in rhs.terms() {
-                product.add_term(times(m, n), c * d);
+                product.add(times(m, n), c * d);
             }
         }
-        product
+        product.collected()
     }
 }
 

@@ -3,7 +3,8 @@
 //! Atoms are symbols (coordinates, rates, inputs), `sin`/`cos` of an *angle* (a sum of coordinates:
 //! the absolute angles of the mechanism), and *bound* atoms, which stand for a defined value.
 
-use super::poly::{Monomial, Poly, Var, times};
+use super::laws::OF_SUMS_OF_ANGLES;
+use super::poly::{Monomial, Poly, Terms, Var, times};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -159,37 +160,28 @@ impl Ring {
 
     /// Exact partial derivative with respect to a symbol; bound atoms are differentiated through.
     pub fn derivative(&self, p: &Poly, by: Var) -> Poly {
-        let mut result = Poly::zero();
-        for (m, c) in p.terms() {
-            for (position, &factor) in m.iter().enumerate() {
-                let inner = self.atom_derivative(factor, by);
-                let mut rest = m.clone();
-                rest.remove(position);
-                for (n, d) in inner.terms() {
-                    result.add_term(times(&rest, n), c * d);
+        product_rule(p, |atom, found| {
+            if atom == by {
+                found(&[], 1.0);
+            } else if let Some((conjugate, sign)) = self.slope(atom) {
+                if self.angles[atom.index()].contains(&by) {
+                    found(&[conjugate], sign);
                 }
+            } else if !matches!(self.plain[atom.index()], Kind::Symbol(_)) {
+                self.with_inner_derivative(atom, by, |inner| inner.terms().for_each(|(m, c)| found(m, c)));
             }
-        }
-        result
+        })
     }
 
-    fn atom_derivative(&self, atom: Var, by: Var) -> Poly {
-        if atom == by {
-            return Poly::constant(1.0);
-        }
-        if atom.is_sin() || atom.is_cos() {
-            let turns = self.angles[atom.index()].contains(&by);
-            return match (turns, atom.is_sin()) {
-                (false, _) => Poly::zero(),
-                (true, true) => Var::cos(atom.index()).into(),
-                (true, false) => Poly::from(Var::sin(atom.index())).scaled(-1.0),
-            };
-        }
-        if let Kind::Symbol(_) = self.plain[atom.index()] {
-            return Poly::zero();
-        }
+    /// The derivative of a sine or cosine by its angle: an atom and its sign.
+    fn slope(&self, atom: Var) -> Option<(Var, f64)> {
+        self.conjugate(atom).map(|conjugate| (conjugate, if atom.is_sin() { 1.0 } else { -1.0 }))
+    }
+
+    /// The derivative of a bound atom.
+    fn with_inner_derivative(&self, atom: Var, by: Var, then: impl FnOnce(&Poly)) {
         if let Some(known) = self.derivatives.borrow().get(&(atom, by)) {
-            return known.clone();
+            return then(known);
         }
         let result = match &self.plain[atom.index()] {
             Kind::Bound(definition) => self.derivative(definition, by),
@@ -199,35 +191,19 @@ impl Ring {
             }
             _ => Poly::zero(),
         };
-        self.derivatives.borrow_mut().insert((atom, by), result.clone());
-        result
+        then(&result);
+        self.derivatives.borrow_mut().insert((atom, by), result);
     }
 
     /// d/dt of an expression in coordinates and rates (each coordinate's rate replaces its derivative).
     pub fn time_derivative(&mut self, p: &Poly) -> Poly {
-        let mut result = Poly::zero();
-        for (m, c) in p.terms() {
-            for (position, &factor) in m.iter().enumerate() {
-                let inner = self.atom_rate(factor);
-                let mut rest = m.clone();
-                rest.remove(position);
-                for (n, d) in inner.terms() {
-                    result.add_term(times(&rest, n), c * d);
-                }
-            }
-        }
-        result
+        product_rule(p, |atom, found| self.atom_rate(atom).terms().for_each(|(m, c)| found(m, c)))
     }
 
     fn atom_rate(&mut self, atom: Var) -> Poly {
-        if atom.is_sin() || atom.is_cos() {
+        if let Some((conjugate, sign)) = self.slope(atom) {
             let rates: Vec<Var> = self.angles[atom.index()].iter().filter_map(|q| self.rate_of(*q)).collect();
-            let rate = self.sum(&rates);
-            return if atom.is_sin() {
-                &Poly::from(Var::cos(atom.index())) * &rate
-            } else {
-                &Poly::from(Var::sin(atom.index())).scaled(-1.0) * &rate
-            };
+            return &Poly::from(conjugate).scaled(sign) * &self.sum(&rates);
         }
         if let Some(rate) = self.rate_of(atom) {
             return rate.into();
@@ -245,41 +221,45 @@ impl Ring {
 
     /// Replaces atoms by expressions. Sums of symbols (rates) are rebuilt from their replaced parts.
     pub fn substitute(&mut self, p: &Poly, map: &BTreeMap<Var, Poly>) -> Poly {
-        let mut result = Poly::zero();
+        let mut result = Terms::default();
         for (m, c) in p.terms() {
-            let mut product = Poly::constant(c);
+            let (mut kept, mut replaced) = (Monomial::new(), Vec::new());
             for &factor in m {
-                let replacement = self.substitute_atom(factor, map);
-                product = &product * &replacement;
+                match self.substitute_atom(factor, map) {
+                    Some(replacement) => replaced.push(replacement),
+                    None => kept.push(factor),
+                }
             }
-            result += &product;
+            if replaced.is_empty() {
+                result.add(kept, c);
+                continue;
+            }
+            let product = replaced.iter().fold(Poly::term(kept, c), |product, r| &product * r);
+            product.terms().for_each(|(m, c)| result.add(Monomial::from_slice(m), c));
         }
-        result
+        result.collected()
     }
 
-    fn substitute_atom(&mut self, atom: Var, map: &BTreeMap<Var, Poly>) -> Poly {
+    /// What takes the place of an atom, if anything does.
+    fn substitute_atom(&mut self, atom: Var, map: &BTreeMap<Var, Poly>) -> Option<Poly> {
         if let Some(replacement) = map.get(&atom) {
-            return replacement.clone();
+            return Some(replacement.clone());
         }
         if atom.is_sin() || atom.is_cos() {
-            return atom.into();
+            return None;
         }
-        match self.plain[atom.index()].clone() {
-            Kind::Bound(definition) => {
-                let touched = definition.terms().any(|(m, _)| m.iter().any(|v| map.contains_key(v)));
-                if !touched {
-                    return atom.into();
-                }
-                let replaced = self.substitute(&definition, map);
-                // A sum of symbols with some of them dropped is again a sum of symbols.
-                if replaced.terms().all(|(m, c)| m.len() == 1 && c == 1.0) {
-                    let symbols: Vec<Var> = replaced.terms().map(|(m, _)| m[0]).collect();
-                    return self.sum(&symbols);
-                }
-                self.bind(replaced)
-            }
-            _ => atom.into(),
+        let Kind::Bound(definition) = &self.plain[atom.index()] else { return None };
+        if !definition.terms().any(|(m, _)| m.iter().any(|v| map.contains_key(v))) {
+            return None;
         }
+        let definition = definition.clone();
+        let replaced = self.substitute(&definition, map);
+        // A sum of symbols with some of them dropped is again a sum of symbols.
+        if replaced.terms().all(|(m, c)| m.len() == 1 && c == 1.0) {
+            let symbols: Vec<Var> = replaced.terms().map(|(m, _)| m[0]).collect();
+            return Some(self.sum(&symbols));
+        }
+        Some(self.bind(replaced))
     }
 
     /// Splits every angle that contains `late`: `sin(late + rest)` becomes a sum of products.
@@ -293,10 +273,10 @@ impl Ring {
                 continue;
             }
             let rest: Vec<Var> = self.angles[angle].iter().copied().filter(|v| *v != late).collect();
-            let (sr, cr) = self.sin_cos(&rest);
-            let (sl, cl) = self.sin_cos(&[late]);
-            map.insert(Var::sin(angle), &(&sl * &cr) + &(&cl * &sr));
-            map.insert(Var::cos(angle), &(&cl * &cr) - &(&sl * &sr));
+            let (first, second) = (self.sin_cos(&[late]), self.sin_cos(&rest));
+            for (law, atom) in OF_SUMS_OF_ANGLES.iter().zip([Var::sin(angle), Var::cos(angle)]) {
+                map.insert(atom, (law.holds)([&first.0, &first.1], [&second.0, &second.1]));
+            }
         }
         self.substitute(p, &map)
     }
@@ -322,12 +302,12 @@ impl Ring {
 
     /// Groups an expression by its factors among the atoms for which `late` holds: `Σ late · early`.
     pub fn staged(&self, p: &Poly, late: impl Fn(Var) -> bool) -> BTreeMap<Monomial, Poly> {
-        let mut groups: BTreeMap<Monomial, Poly> = BTreeMap::new();
+        let mut groups: BTreeMap<Monomial, Terms> = BTreeMap::new();
         for (m, c) in p.terms() {
             let (l, e): (Monomial, Monomial) = m.iter().copied().partition(|v| late(*v));
-            groups.entry(l).or_default().add_term(e, c);
+            groups.entry(l).or_default().add(e, c);
         }
-        groups
+        groups.into_iter().map(|(late, early)| (late, early.collected())).collect()
     }
 
     /// Groups an expression by what moves: `Σ moving · fixed`.
@@ -380,6 +360,21 @@ impl Ring {
         known.insert(atom, value);
         value
     }
+}
+
+/// (x y)' = x' y + x y': `slope` hands out the terms of an atom's derivative.
+fn product_rule(p: &Poly, mut slope: impl FnMut(Var, &mut dyn FnMut(&[Var], f64))) -> Poly {
+    let mut result = Terms::default();
+    for (m, c) in p.terms() {
+        for (position, &factor) in m.iter().enumerate() {
+            slope(factor, &mut |inner, d| {
+                let mut rest = Monomial::from_slice(m);
+                rest.remove(position);
+                result.add(if inner.is_empty() { rest } else { times(&rest, inner) }, c * d);
+            });
+        }
+    }
+    result.collected()
 }
 
 #[cfg(test)]

@@ -25,17 +25,22 @@ const STEP: f64 = 1.0 / 1024.0;
 
 /// All numbers that a gait depends on. Both must have passed validation.
 pub fn levers(robot: &Robot, gait: &Gait) -> Vec<Lever> {
+    let physical: Vec<_> = parameters(robot).into_iter().map(|p| (p.name, p.unit, p.value)).collect();
     let numbers = |name: &str, value: f64| {
-        let mut robot = with(robot, |other| (other == name).then_some(value));
         let mut gait = gait.clone();
-        let places = places(&mut robot, &mut gait.limits).into_iter().filter(|place| place.0 == name);
-        places.for_each(|(_, _, number)| *number = value);
+        let robot = if physical.iter().any(|known| known.0 == name) {
+            with(robot, |other| (other == name).then_some(value))
+        } else {
+            let mut robot = robot.clone();
+            let places = places(&mut robot, &mut gait.limits).into_iter().filter(|place| place.0 == name);
+            places.for_each(|(_, _, number)| *number = value);
+            robot
+        };
         let robot = robot.locked(&gait.locked).ok()?;
         let mechanism = Mechanism::new(&robot, &gait);
         Some([mechanism.numbers(), mechanism.limiting_numbers()].concat())
     };
-    let physical = parameters(robot).into_iter().map(|p| (p.name, p.unit, p.value));
-    let mut named: Vec<(String, &'static str, f64)> = physical.collect();
+    let mut named: Vec<(String, &'static str, f64)> = physical.clone();
     for (name, unit, number) in places(&mut robot.clone(), &mut gait.limits.clone()) {
         if named.iter().all(|known| known.0 != name) {
             named.push((name, unit, *number));
@@ -57,6 +62,9 @@ pub fn levers(robot: &Robot, gait: &Gait) -> Vec<Lever> {
 
 /// To the digits that differences can give; what cancels to rounding is zero.
 fn rounded(slope: f64) -> f64 {
+    if slope == 0.0 {
+        return 0.0;
+    }
     let rounded = format!("{slope:.10e}").parse().unwrap_or(slope);
     if f64::abs(rounded) < 1e-12 { 0.0 } else { rounded }
 }

@@ -72,7 +72,7 @@ pub fn factor(program: &mut Program) {
         market: Market::new(pairs),
     };
     for (sum, terms) in program.sums.iter().enumerate() {
-        terms.iter().for_each(|t| search.insert(sum, t.coefficient, t.factors.clone()));
+        terms.iter().for_each(|t| search.insert(sum, t.coefficient, Factors::from_slice(&t.factors)));
     }
     search.market.open();
     while let Some(best) = search.market.best() {
@@ -177,7 +177,7 @@ impl Search<'_> {
             let mut gone: Vec<usize> = list.iter().flat_map(|r| r.gone.iter().copied()).collect();
             gone.sort_unstable();
             gone.into_iter().rev().for_each(|at| self.remove(list[0].sum, at));
-            list.iter().for_each(|r| self.insert(r.sum, exact(r.coefficient / scale), r.factors.clone()));
+            list.iter().for_each(|r| self.insert(r.sum, exact(r.coefficient / scale), Factors::from_slice(&r.factors)));
         }
         let new = self.sums.len();
         self.sums.push(Sum::default());
@@ -226,7 +226,7 @@ impl Search<'_> {
         match divisor {
             Divisor::Product(a, b) => {
                 for (i, entry) in containing(marks_of(&[*a, *b])) {
-                    let mut rest = factors(entry).clone();
+                    let mut rest = Factors::from_slice(factors(entry));
                     let mut times = 0;
                     while let Some(less) = without(&rest, &[*a, *b]) {
                         rest = less;

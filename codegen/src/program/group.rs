@@ -5,29 +5,37 @@
 //! see two terms at a time and may cut such a common part differently in each place.
 
 use super::divisor::{Factors, exact, rounded};
-use super::{Id, Node, Program, Term};
+use super::{Id, Node, Program, Sum, Term};
 use std::collections::BTreeMap;
 
 /// Which sums a term is in, and its coefficient there beside that in the first of them.
 type Signature = Vec<(usize, u64)>;
 
-/// A term of a group: its factors and its coefficient in each of the signature's sums.
-type Member = (Factors, Vec<f64>);
+/// A term of a group: its factors, and its coefficient and index in each of the signature's sums.
+struct Member {
+    factors: Factors,
+    places: Vec<(f64, usize)>,
+}
 
 /// The groups of a program's terms.
 pub struct Groups(Vec<(Signature, Vec<Member>)>);
 
 impl Groups {
     pub fn new(program: &Program) -> Groups {
-        let terms = program.sums.iter().enumerate().flat_map(|(s, sum)| sum.iter().map(move |t| (s, t)));
-        let mut terms: Vec<(usize, &Term)> = terms.collect();
-        terms.sort_by(|(s, a), (r, b)| a.factors.cmp(&b.factors).then(s.cmp(r)));
+        let of_sum = |(s, sum)| -> Vec<(usize, usize, &Term)> {
+            let sum: &Sum = sum;
+            sum.iter().enumerate().map(|(i, t)| (s, i, t)).collect()
+        };
+        let mut terms: Vec<(usize, usize, &Term)> = program.sums.iter().enumerate().flat_map(of_sum).collect();
+        terms.sort_by(|(s, _, a), (r, _, b)| a.factors.cmp(&b.factors).then(s.cmp(r)));
         let mut groups: BTreeMap<Signature, Vec<Member>> = BTreeMap::new();
-        for places in terms.chunk_by(|(_, a), (_, b)| a.factors == b.factors).filter(|places| places.len() > 1) {
-            let first = places[0].1;
-            let signature = places.iter().map(|(s, t)| (*s, rounded(t.coefficient / first.coefficient))).collect();
-            let member = (first.factors.clone(), places.iter().map(|(_, t)| t.coefficient).collect());
-            groups.entry(signature).or_default().push(member);
+        let same = |a: &(usize, usize, &Term), b: &(usize, usize, &Term)| a.2.factors == b.2.factors;
+        for places in terms.chunk_by(same).filter(|places| places.len() > 1) {
+            let first = places[0].2;
+            let ratio = |t: &Term| rounded(t.coefficient / first.coefficient);
+            let signature = places.iter().map(|(s, _, t)| (*s, ratio(t))).collect();
+            let places = places.iter().map(|(_, i, t)| (t.coefficient, *i)).collect();
+            groups.entry(signature).or_default().push(Member { factors: Factors::from_slice(&first.factors), places });
         }
         Groups(groups.into_iter().collect())
     }
@@ -39,23 +47,30 @@ impl Groups {
 
     /// The program with every group of at least `least` members computed once.
     pub fn apply(&self, program: &Program, least: usize) -> Program {
-        let mut result = program.clone();
+        let mut result = Program { sums: Vec::new(), ..program.clone() };
+        let mut gone: Vec<Vec<bool>> = program.sums.iter().map(|sum| vec![false; sum.len()]).collect();
+        let mut nodes: Vec<Sum> = vec![Sum::new(); program.sums.len()];
+        let mut groups = Vec::new();
         for (signature, members) in self.0.iter().filter(|(_, members)| members.len() >= least) {
             let unit = rounded(1.0);
             let whole = signature.iter().find(|(s, ratio)| *ratio == unit && program.sums[*s].len() == members.len());
-            let sum = whole.map_or(result.sums.len(), |(s, _)| *s);
+            let sum = whole.map_or(program.sums.len() + groups.len(), |(s, _)| *s);
             if whole.is_none() {
-                let term = |(factors, c): &Member| Term { coefficient: c[0], factors: factors.clone() };
-                result.sums.push(members.iter().map(term).collect());
+                let term = |m: &Member| Term { coefficient: m.places[0].0, factors: Factors::from_slice(&m.factors) };
+                groups.push(members.iter().map(term).collect());
             }
             let node = node_of(&mut result, sum);
             for (place, (s, _)) in signature.iter().enumerate().filter(|(_, (s, _))| *s != sum) {
-                let coefficient = exact(members[0].1[place] / members[0].1[0]);
-                let terms = &mut result.sums[*s];
-                terms.retain(|t| members.binary_search_by(|(factors, _)| factors.cmp(&t.factors)).is_err());
-                terms.push(Term { coefficient, factors: Factors::from_slice(&[node]) });
+                members.iter().for_each(|m| gone[*s][m.places[place].1] = true);
+                let coefficient = exact(members[0].places[place].0 / members[0].places[0].0);
+                nodes[*s].push(Term { coefficient, factors: Factors::from_slice(&[node]) });
             }
         }
+        for ((terms, gone), nodes) in program.sums.iter().zip(gone).zip(nodes) {
+            let kept = terms.iter().zip(gone).filter(|(_, gone)| !gone).map(|(term, _)| term.clone());
+            result.sums.push(kept.chain(nodes).collect());
+        }
+        result.sums.extend(groups);
         result
     }
 }

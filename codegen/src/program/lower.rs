@@ -1,5 +1,6 @@
 //! Lowering: the atoms that a kernel reaches become nodes, its expressions sums over them.
 
+use super::divisor::Factors;
 use super::{Id, Node, Program, Sum, Term};
 use crate::dynamics::Kernel;
 use crate::expr::{Kind, Poly, Ring, Var};
@@ -8,7 +9,8 @@ use std::collections::BTreeMap;
 struct Lowering<'a> {
     ring: &'a Ring,
     program: Program,
-    known: BTreeMap<Var, Id>,
+    /// Nodes of atoms, of sines and of cosines.
+    known: [Vec<Option<Id>>; 3],
     /// Arguments of sines and cosines, so that a pair shares one.
     arguments: BTreeMap<Vec<Var>, usize>,
 }
@@ -17,13 +19,13 @@ pub fn lower(ring: &Ring, kernel: &Kernel) -> Program {
     let mut lowering = Lowering {
         ring,
         program: Program { nodes: Vec::new(), sums: Vec::new(), outputs: Vec::new() },
-        known: BTreeMap::new(),
+        known: [const { Vec::new() }; 3],
         arguments: BTreeMap::new(),
     };
     for (i, input) in kernel.inputs.iter().enumerate() {
         for (k, symbol) in input.symbols.iter().enumerate() {
             let id = lowering.node(Node::Input(i, k));
-            lowering.known.insert(*symbol, id);
+            lowering.remember(*symbol, id);
         }
     }
     for output in &kernel.outputs {
@@ -42,9 +44,10 @@ impl Lowering<'_> {
     fn sum(&mut self, p: &Poly) -> usize {
         let mut sum: Sum = Vec::with_capacity(p.len());
         for (monomial, coefficient) in p.terms() {
-            let mut term = Term { coefficient, factors: monomial.iter().map(|v| self.atom(*v)).collect() };
-            term.factors.sort_unstable();
-            sum.push(term);
+            let mut factors = Factors::with_capacity(monomial.len());
+            monomial.iter().for_each(|v| factors.push(self.atom(*v)));
+            factors.sort_unstable();
+            sum.push(Term { coefficient, factors });
         }
         sum.sort_by(|a, b| a.factors.cmp(&b.factors));
         // Structurally equal sums are one sum.
@@ -56,7 +59,8 @@ impl Lowering<'_> {
     }
 
     fn atom(&mut self, var: Var) -> Id {
-        if let Some(id) = self.known.get(&var) {
+        let (kind, index) = var.place();
+        if let Some(Some(id)) = self.known[kind].get(index) {
             return *id;
         }
         let node = match self.ring.kind(var) {
@@ -68,8 +72,15 @@ impl Lowering<'_> {
             Kind::Symbol(name) => unreachable!("the kernel does not take `{name}`"),
         };
         let id = self.node(node);
-        self.known.insert(var, id);
+        self.remember(var, id);
         id
+    }
+
+    fn remember(&mut self, var: Var, id: Id) {
+        let (kind, index) = var.place();
+        let known = &mut self.known[kind];
+        known.resize(known.len().max(index + 1), None);
+        known[index] = Some(id);
     }
 
     fn argument(&mut self, angle: Vec<Var>) -> usize {

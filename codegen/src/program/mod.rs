@@ -18,10 +18,17 @@ use std::collections::BTreeMap;
 pub type Id = u32;
 
 /// `coefficient · product of nodes`, nodes sorted.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct Term {
     pub coefficient: f64,
     pub factors: SmallVec<[Id; 6]>,
+}
+
+impl Clone for Term {
+    /// Copies the factors at once; a `SmallVec` clones them one by one.
+    fn clone(&self) -> Term {
+        Term { coefficient: self.coefficient, factors: SmallVec::from_slice(&self.factors) }
+    }
 }
 
 /// A sum of terms.
@@ -84,10 +91,19 @@ const LEAST_GROUP: [usize; 6] = [6, 2, 3, 4, 9, usize::MAX];
 const PAIRS: usize = 15_000;
 
 impl Program {
-    /// Lowers a kernel and factors it in several ways; the one with the fewest operations stays.
+    /// Lowers a kernel and factors it.
     pub fn new(ring: &Ring, kernel: &Kernel) -> Program {
-        let lowered = lower::lower(ring, kernel);
-        let groups = Groups::new(&lowered);
+        Program::as_derived(ring, kernel).factored()
+    }
+
+    /// Lowers a kernel as it was derived: what is factored from it is measured against this.
+    pub fn as_derived(ring: &Ring, kernel: &Kernel) -> Program {
+        lower::lower(ring, kernel)
+    }
+
+    /// Factors it in several ways; the one with the fewest operations stays.
+    pub fn factored(&self) -> Program {
+        let groups = Groups::new(self);
         let mut tried = Vec::new();
         let mut pairs = 0;
         let mut best: Option<(usize, Program)> = None;
@@ -97,7 +113,7 @@ impl Program {
                 continue;
             }
             tried.push(count);
-            let mut program = groups.apply(&lowered, least);
+            let mut program = groups.apply(self, least);
             let more: usize = program.sums.iter().map(|s| s.len() * s.len() / 2).sum();
             if best.is_some() && pairs + more > PAIRS {
                 continue;
@@ -109,12 +125,7 @@ impl Program {
                 best = Some((flops, program));
             }
         }
-        best.map_or(lowered, |(_, program)| program)
-    }
-
-    /// Lowers a kernel as it was derived: what is factored from it is measured against this.
-    pub fn as_derived(ring: &Ring, kernel: &Kernel) -> Program {
-        lower::lower(ring, kernel)
+        best.map_or_else(|| self.clone(), |(_, program)| program)
     }
 
     /// Nodes in an order in which each comes after all that it needs; unused ones are left out.

@@ -126,11 +126,7 @@ impl<'m> Notation<'m> {
     }
 
     fn definition(&self, k: usize, lump: &Poly) -> String {
-        let one = |(monomial, c): (&Monomial, f64)| {
-            let mut term = Poly::zero();
-            term.add_term(monomial.clone(), c);
-            self.sum(&term)
-        };
+        let one = |(monomial, c): (&Monomial, f64)| self.sum(&Poly::term(monomial.clone(), c));
         lines(&format!("k_{{{}}}", k + 1), lump.terms().map(one))
     }
 
