@@ -1,5 +1,7 @@
 //! The pinned sine and cosine against a double-double Taylor series, in units in the last place.
 
+// Kernels use all of it, this test a part.
+#[allow(dead_code)]
 #[path = "../support/math.rs"]
 mod math;
 

@@ -51,15 +51,16 @@ pub struct Pair<'a> {
     shared: usize,
 }
 
-/// SplitMix64: spreads consecutive numbers over all bits.
+/// The mixing of SplitMix64: spreads numbers over all bits.
 fn mix(x: u64) -> u64 {
     let x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     let x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
     x ^ (x >> 31)
 }
 
+/// Not for a multiple of `id`, which `mix` would nearly take to a multiple: a square must not look like a node.
 fn hash_of_node(id: Id) -> u64 {
-    mix((u64::from(id) + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15))
+    mix(u64::from(id).wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(0x2545_F491_4F6C_DD1D))
 }
 
 /// A bit per node modulo 64.

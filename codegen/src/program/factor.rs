@@ -22,7 +22,7 @@ struct Search<'a> {
     /// Rows of `Entry`s.
     offered: Vec<Offered>,
     /// Sums in which a node occurs or has occurred.
-    places: Vec<Vec<u32>>,
+    places: Vec<SmallVec<[u32; 4]>>,
     market: Market,
     /// A zero for every node, but while a term is compared with others.
     hashes: Vec<u64>,
@@ -63,11 +63,11 @@ struct Rewrite {
 pub fn factor(program: &mut Program) {
     let pairs = program.sums.iter().map(|s| s.len() * s.len() / 2).sum();
     let mut search = Search {
-        places: vec![Vec::new(); program.nodes.len()],
+        places: vec![SmallVec::new(); program.nodes.len()],
         hashes: vec![0; program.nodes.len()],
         nodes: &mut program.nodes,
         terms: Vec::new(),
-        sums: program.sums.iter().map(|_| Sum::default()).collect(),
+        sums: program.sums.iter().map(|s| Sum { entries: Vec::with_capacity(s.len()), births: 0 }).collect(),
         offered: Vec::with_capacity(pairs),
         market: Market::new(pairs),
     };
@@ -160,7 +160,7 @@ impl Search<'_> {
         let divisor = self.divisor(best.origin);
         let node = self.nodes.len() as Id;
         let rarest = divisor.nodes().min_by_key(|id| self.places[*id as usize].len());
-        let mut places = rarest.map_or(Vec::new(), |id| self.places[id as usize].clone());
+        let mut places = rarest.map_or(Vec::new(), |id| self.places[id as usize].to_vec());
         places.sort_unstable();
         places.dedup();
         let mut found = Vec::new();
@@ -171,7 +171,7 @@ impl Search<'_> {
             return self.market.correct(best, gain);
         }
         self.nodes.push(Node::Value(self.sums.len()));
-        self.places.push(Vec::new());
+        self.places.push(SmallVec::new());
         self.hashes.push(0);
         for list in found.chunk_by(|a, b| a.sum == b.sum) {
             let mut gone: Vec<usize> = list.iter().flat_map(|r| r.gone.iter().copied()).collect();

@@ -85,10 +85,10 @@ impl Term {
 }
 
 /// Least sizes of the groups that are computed once before factoring: no size is best for all kernels.
-const LEAST_GROUP: [usize; 6] = [6, 2, 3, 4, 9, usize::MAX];
+const LEAST_GROUP: [usize; 7] = [7, 4, 6, usize::MAX, 9, 2, 3];
 
 /// Pairs of terms that attempts may look at, the first one apart: a bound on the time that a kernel takes.
-const PAIRS: usize = 15_000;
+const PAIRS: usize = 3_000;
 
 impl Program {
     /// Lowers a kernel and factors it.
