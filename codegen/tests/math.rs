@@ -167,3 +167,25 @@ fn lanes_are_single_angles() {
         assert!((s - x[i].sin()).abs() < 1e-15 && (c - x[i].cos()).abs() < 1e-15);
     }
 }
+
+/// So have a few angles together, whatever their number.
+#[test]
+fn angles_together_are_single_angles() {
+    fn agree<const N: usize>(angles: &[f64], both: [[f64; N]; 2]) {
+        for (k, x) in angles.iter().enumerate() {
+            let (s, c) = math::sin_cos(*x);
+            assert_eq!((s.to_bits(), c.to_bits()), (both[0][k].to_bits(), both[1][k].to_bits()));
+        }
+    }
+    for shift in [-7.0, 0.0, 1.5e3] {
+        let x: [f64; 8] = std::array::from_fn(|i| 1.3 * i as f64 + shift);
+        let [a, b, c, d, e, f, g, h] = x;
+        agree(&x[..2], math::sin_cos_2(a, b));
+        agree(&x[..3], math::sin_cos_3(a, b, c));
+        agree(&x[..4], math::sin_cos_4(a, b, c, d));
+        agree(&x[..5], math::sin_cos_5(a, b, c, d, e));
+        agree(&x[..6], math::sin_cos_6(a, b, c, d, e, f));
+        agree(&x[..7], math::sin_cos_7(a, b, c, d, e, f, g));
+        agree(&x[..8], math::sin_cos_8(a, b, c, d, e, f, g, h));
+    }
+}

@@ -5,7 +5,8 @@ use piaffe::model::Description;
 use piaffe::motion::HalfStep;
 use piaffe::verify::constraint::Constraint;
 use piaffe::verify::dual::Dual;
-use piaffe::verify::instants::State;
+use piaffe::verify::instants::{Instants, State};
+use piaffe::verify::lanes::Lanes;
 use piaffe::verify::margins::Units;
 use piaffe::verify::numbers::Numbers;
 use piaffe::verify::phase::Phase;
@@ -59,4 +60,34 @@ fn duals_differentiate_a_whole_half_step() {
         let values: Vec<f64> = exact.iter().map(|x| x.x).collect();
         assert_eq!(values, altered(d, half_step, [0.0; 3]));
     }
+}
+
+#[test]
+fn instants_side_by_side_are_single_instants_to_the_bit() {
+    for gait in gaits() {
+        let d = gait.description();
+        let half_step = &stepping(d).half_steps[0];
+        let times = [0.0, 0.31, 0.77, 1.0].map(|s| s * half_step.duration);
+        let (beta, betad) = ([0.1, -0.2, 0.05, 0.3], [1.0, -0.4, 0.2, 2.0]);
+        let mut state = State::new(d);
+        let mut together = Instants::<Lanes<4>>::new(d, Numbers::new(d), &half_step.cast(), 0);
+        let acceleration = together.at(Lanes(times), [Lanes(beta), Lanes(betad)], &mut state).unwrap();
+        for lane in 0..4 {
+            let mut own = State::new(d);
+            let mut alone = Instants::new(d, Numbers::new(d), half_step, 0);
+            let single = alone.at(times[lane], [beta[lane], betad[lane]], &mut own).unwrap();
+            assert_eq!(single, acceleration.0[lane], "{}", d.gait);
+            let mut margins = Vec::new();
+            Units::new(d).margins(alone.numbers(), &own, |_, margin| margins.push(margin));
+            let mut k = 0;
+            Units::new(d).margins(together.numbers(), &state, |constraint, margin| {
+                assert_eq!(margin.0[lane], margins[k], "{} {constraint:?}", d.gait);
+                k += 1;
+            });
+            assert_eq!((own.swing.y, own.swing_velocity.y), (state.swing.y.0[lane], state.swing_velocity.y.0[lane]));
+        }
+    }
+    // One lane where f1 vanishes, or that is no number, is enough for none.
+    assert_eq!(Lanes([3.0, -1.0, 2.0]).least_magnitude(), 1.0);
+    assert!(Lanes([3.0, f64::NAN, 0.0]).least_magnitude().is_nan());
 }
