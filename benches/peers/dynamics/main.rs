@@ -110,7 +110,9 @@ macro_rules! times {
 
 fn main() {
     if std::env::args().any(|a| a == "--describe") {
-        println!("{}", Value::from_iter(GAITS.iter().map(|g| describe(*g))));
+        // The robot without a folder of its own, whose gaits are timed below.
+        let own = GAITS.iter().filter(|g| !g.description().key.contains('/'));
+        println!("{}", Value::from_iter(own.map(|g| describe(*g))));
         return;
     }
     times!(trot);
