@@ -1,7 +1,7 @@
 //! The pinned sine and cosine against a double-double Taylor series, in units in the last place.
 
 // Kernels use all of it, this test a part.
-#[allow(dead_code)]
+#[allow(dead_code, clippy::too_many_arguments)]
 #[path = "../support/math.rs"]
 mod math;
 

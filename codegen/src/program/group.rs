@@ -45,6 +45,16 @@ impl Groups {
         self.0.iter().filter(|(_, members)| members.len() >= least).count()
     }
 
+    /// Pairs of terms in the sums that [`apply`](Groups::apply) leaves.
+    pub fn pairs(&self, program: &Program, least: usize) -> usize {
+        let mut lengths: Vec<usize> = program.sums.iter().map(Vec::len).collect();
+        for (signature, members) in self.0.iter().filter(|(_, members)| members.len() >= least) {
+            signature.iter().for_each(|(s, _)| lengths[*s] = lengths[*s] + 1 - members.len());
+            lengths.push(members.len());
+        }
+        lengths.iter().map(|length| length * length / 2).sum()
+    }
+
     /// The program with every group of at least `least` members computed once.
     pub fn apply(&self, program: &Program, least: usize) -> Program {
         let mut result = Program { sums: Vec::new(), ..program.clone() };

@@ -113,12 +113,12 @@ impl Program {
                 continue;
             }
             tried.push(count);
-            let mut program = groups.apply(self, least);
-            let more: usize = program.sums.iter().map(|s| s.len() * s.len() / 2).sum();
+            let more = groups.pairs(self, least);
             if best.is_some() && pairs + more > PAIRS {
                 continue;
             }
             pairs += more;
+            let mut program = groups.apply(self, least);
             factor(&mut program);
             let flops = program.operations().flops;
             if best.as_ref().is_none_or(|(least, _)| flops < *least) {
