@@ -1,3 +1,3 @@
 fn main() {
-    piaffe_codegen::Config::new("../downstream/model-spec").functions_only().compile();
+    piaffe_codegen::Config::new("model-spec").functions_only().compile();
 }
