@@ -25,6 +25,7 @@ macro_rules! together {
         /// Sines and cosines of some angles at once, each with the bits of [`sin_cos`]. What is beyond the angles is void.
         // Angles come one by one and the function stays a call: that is how LLVM makes vector instructions of the loop.
         #[inline(never)]
+        #[allow(clippy::too_many_arguments)]
         pub fn $name($($x: f64),+) -> [[f64; filled($count)]; 2] {
             let mut x = [0.0; filled($count)];
             x[..$count].copy_from_slice(&[$($x),+]);
