@@ -170,7 +170,7 @@ fn entries(root: &Path, folder: &Path) -> Result<Vec<PathBuf>, String> {
 /// The rendered diagnostics, if the specification has mistakes.
 pub fn generate(robots: &[RobotFiles], runtime: Option<&str>) -> Result<Vec<Generated>, String> {
     let parsed = parse(robots)?;
-    let mut files = for_each_gait(&parsed, |robot, gait, origin| {
+    let gait_file = |robot: &Parsed, gait: &Gait, origin: &str| {
         let (module, mechanism) = (&robot.files.module, Mechanism::new(&locked(&robot.spec, &gait.locked)?, gait));
         let latex = latex(&robot.spec, gait, &mechanism);
         let whole = robot.wholes().iter().position(|angles| **angles == gait.locked).unwrap_or_default();
@@ -184,14 +184,19 @@ pub fn generate(robots: &[RobotFiles], runtime: Option<&str>) -> Result<Vec<Gene
             origin,
         )?;
         Ok((emit::file_name(module, &gait.name), source))
-    })?;
+    };
+    let whole_file = |robot: &Parsed, number: usize, angles: &Angles| {
+        let whole = Whole::new(&locked(&robot.spec, angles)?);
+        let source = emit::whole_source(&whole, runtime, &origin(&[&robot.files.robot]))?;
+        Ok((emit::whole_file_name(&robot.files.module, number), source))
+    };
+    let mut jobs = for_each_gait(&parsed, &gait_file);
     for robot in &parsed {
         for (number, angles) in robot.wholes().into_iter().enumerate() {
-            let whole = Whole::new(&locked(&robot.spec, angles)?);
-            let source = emit::whole_source(&whole, runtime, &origin(&[&robot.files.robot]))?;
-            files.push((emit::whole_file_name(&robot.files.module, number), source));
+            jobs.push(Box::new(move || whole_file(robot, number, angles)));
         }
     }
+    let mut files = together(jobs)?;
     let wholes: Vec<usize> = parsed.iter().map(|robot| robot.wholes().len()).collect();
     let registry = emit::registry_source(&modules(&parsed), &wholes, runtime, &origin_of_all(robots));
     files.push(("gaits.rs".into(), registry));
@@ -211,12 +216,13 @@ pub fn generate_families(
     let select =
         |robot: &Parsed| select(&robot.spec, parameters).map_err(|e| format!("{}: {e}", robot.files.robot.path));
     let chosen = parsed.iter().map(select).collect::<Result<Vec<_>, _>>()?;
-    let mut files = for_each_gait(&parsed, |robot, gait, origin| {
+    let file = |robot: &Parsed, gait: &Gait, origin: &str| {
         let family = Family::new(&robot.spec, gait, select(robot)?)?;
         let latex = latex(&robot.spec, gait, &family.mechanism);
         let source = emit::family_source(&family, &robot.files.module, &latex, runtime, origin)?;
         Ok((emit::family_file_name(&robot.files.module, &gait.name), source))
-    })?;
+    };
+    let mut files = together(for_each_gait(&parsed, &file))?;
     let registry = emit::families_source(&modules(&parsed), &chosen, runtime, &origin_of_all(robots));
     files.push(("families.rs".into(), registry));
     Ok(files)
@@ -276,16 +282,21 @@ fn parse(robots: &[RobotFiles]) -> Result<Vec<Parsed<'_>>, String> {
     Ok(parsed)
 }
 
-/// A file for each gait. Gaits do not know of each other: one thread each, joined in order.
-fn for_each_gait(
-    robots: &[Parsed],
-    file: impl Fn(&Parsed, &Gait, &str) -> Result<Generated, String> + Sync,
-) -> Result<Vec<Generated>, String> {
-    let file = &file;
+/// What makes a file and knows of no other.
+type Job<'j> = Box<dyn FnOnce() -> Result<Generated, String> + Send + 'j>;
+
+fn for_each_gait<'j>(
+    robots: &'j [Parsed],
+    file: &'j (impl Fn(&Parsed, &Gait, &str) -> Result<Generated, String> + Sync),
+) -> Vec<Job<'j>> {
+    let gaits = robots.iter().flat_map(|robot| robot.gaits.iter().map(move |(gait, origin)| (robot, gait, origin)));
+    gaits.map(|(robot, gait, origin)| Box::new(move || file(robot, gait, origin)) as Job).collect()
+}
+
+/// One thread for each file, joined in order.
+fn together(jobs: Vec<Job>) -> Result<Vec<Generated>, String> {
     std::thread::scope(|scope| {
-        let jobs = robots.iter().flat_map(|robot| robot.gaits.iter().map(move |(gait, origin)| (robot, gait, origin)));
-        let running: Vec<_> =
-            jobs.map(|(robot, gait, origin)| scope.spawn(move || file(robot, gait, origin))).collect();
+        let running: Vec<_> = jobs.into_iter().map(|job| scope.spawn(job)).collect();
         let stopped = |_| Err("the generator stopped: a defect of piaffe-codegen".to_string());
         running.into_iter().map(|thread| thread.join().unwrap_or_else(stopped)).collect()
     })
