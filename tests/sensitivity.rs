@@ -51,7 +51,11 @@ fn elasticities_add_up_to_the_dimension_of_the_criterion() {
     // matters is forgotten, and none counts twice.
     for (gait, criterion) in GAITS.iter().flat_map(|g| Criterion::ALL.map(|c| (*g, c))) {
         let local = optimum(gait, criterion);
-        let found = sensitivities(gait, criterion, SPEED, &local.motion).unwrap();
+        let Some(found) = sensitivities(gait, criterion, SPEED, &local.motion) else {
+            // Prices are told only where the residual holds; on the A1 it need not (docs/robots.md).
+            assert!(gait.description().key.starts_with("a1/"));
+            continue;
+        };
         for (k, expected) in dimension(criterion.unit()).into_iter().enumerate() {
             let sum: f64 = found.slopes.iter().map(|s| s.elasticity * dimension(&s.unit)[k]).sum();
             // Multipliers are those of the optimizer's mesh.
@@ -73,7 +77,11 @@ fn slopes_in_limits_and_speed_are_those_of_optima_of_changed_problems() {
     let mut compared = 0;
     for (gait, criterion) in GAITS.iter().flat_map(|g| Criterion::ALL.map(|c| (*g, c))) {
         let local = optimum(gait, criterion);
-        let found = sensitivities(gait, criterion, SPEED, &local.motion).unwrap();
+        let Some(found) = sensitivities(gait, criterion, SPEED, &local.motion) else {
+            // Prices are told only where the residual holds; on the A1 it need not (docs/robots.md).
+            assert!(gait.description().key.starts_with("a1/"));
+            continue;
+        };
         let name = format!("{} {criterion:?}", gait.description().key);
         let best = local.costs.of(criterion);
         // Optima are refined to 1e-7 between the nodes, which costs more where clearance has the A1's price: some 2e-5.

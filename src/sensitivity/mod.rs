@@ -10,6 +10,7 @@ use crate::constraints::sharing::applies;
 use crate::model::Gait;
 use crate::motion::{Criterion, Motion};
 use crate::optimality::Linearized;
+use crate::result::KKT_RESIDUAL;
 use lagrangian::{LANES, Slopes};
 use serde::{Deserialize, Serialize};
 
@@ -45,7 +46,7 @@ pub struct Sensitivity {
 }
 
 /// The sensitivities of a motion that minimizes `criterion` at `speed` (m/s). `None` without levers
-/// ([`Gait::levers`]), with limits at each real leg, or if the motion cannot be followed.
+/// ([`Gait::levers`]), with limits at each real leg, if the motion cannot be followed, or if by its residual it is no optimum.
 ///
 /// # Panics
 /// If the motion has not the numbers that the gait needs; `verify` tells.
@@ -55,6 +56,10 @@ pub fn sensitivities(gait: &dyn Gait, criterion: Criterion, speed: f64, motion: 
         return None;
     }
     let linearized = Linearized::new(gait, criterion, speed, motion).ok()?;
+    let kkt = &linearized.multipliers.kkt;
+    if kkt.stationarity.max(kkt.complementarity) > KKT_RESIDUAL {
+        return None;
+    }
     let slopes = Slopes::new(&linearized, motion);
     let cost = linearized.multipliers.values.objective;
     let entry = |parameter: &str, unit: &str, value: f64, slope: f64| Sensitivity {
