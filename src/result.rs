@@ -274,7 +274,7 @@ impl GaitResult {
     /// Makes `local` the result, with its receipt.
     fn take(&mut self, gait: &dyn Gait, local: &Local) {
         match verify(gait.description(), &local.motion, self.speed, GRID) {
-            Ok(receipt) => self.accept(&local.motion, receipt, local.kkt.stationarity.max(local.kkt.complementarity)),
+            Ok(receipt) => self.accept(&local.motion, receipt, local.kkt.optimality()),
             Err(error) => {
                 self.status = Status::ReceiptFailed;
                 self.message = format!("the optimizer's motion could not be re-derived: {error}");

@@ -56,8 +56,7 @@ pub fn sensitivities(gait: &dyn Gait, criterion: Criterion, speed: f64, motion: 
         return None;
     }
     let linearized = Linearized::new(gait, criterion, speed, motion).ok()?;
-    let kkt = &linearized.multipliers.kkt;
-    if kkt.stationarity.max(kkt.complementarity) > KKT_RESIDUAL {
+    if linearized.multipliers.kkt.optimality() > KKT_RESIDUAL {
         return None;
     }
     let slopes = Slopes::new(&linearized, motion);

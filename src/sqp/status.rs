@@ -43,6 +43,11 @@ pub struct KktResidual {
 }
 
 impl KktResidual {
+    /// How far from optimal, whatever the violation.
+    pub fn optimality(&self) -> f64 {
+        self.stationarity.max(self.complementarity)
+    }
+
     pub(super) const UNKNOWN: Self =
         Self { stationarity: f64::INFINITY, complementarity: f64::INFINITY, violation: f64::INFINITY };
 }
