@@ -97,14 +97,6 @@ impl Shared {
     }
 }
 
-/// The state at one node.
-#[derive(Clone, Debug, Default)]
-pub struct State {
-    pub q: Vec<f64>,
-    pub qd: Vec<f64>,
-    pub qdd: Vec<f64>,
-}
-
 /// The quantities at all nodes of a half step: values, and derivatives of the last linearization.
 #[derive(Clone, Debug)]
 pub struct Instants {
@@ -112,9 +104,12 @@ pub struct Instants {
     layout: Layout,
     /// One row of quantities per node.
     pub values: Vec<f64>,
-    pub states: Vec<State>,
-    /// Results of the `inverse_jacobian`, `placement` and `swing_velocity` kernels, a row per node.
+    /// q, q̇ and q̈, a row per node.
+    states: Vec<f64>,
+    /// Results of the `inverse_jacobian` kernel, a row per collocation node, and of `inverse` at the last of the others.
     inverse: Vec<f64>,
+    further: Vec<f64>,
+    /// Results of the `placement` kernel, a row per node, and of `swing_velocity` at both ends.
     placement: Vec<f64>,
     swing: [Vec<f64>; 2],
     /// Results of the `sharing` kernel, a row per node; none if nothing shared is looked at.
@@ -133,13 +128,13 @@ impl Instants {
         let layout = Layout::new(description, &mesh.basis);
         let (nq, nj, nc) = (description.orientations(), description.joints(), description.positions());
         let (n, collocation) = (mesh.nodes.len(), mesh.collocation());
-        let z = || vec![0.0; nq];
         Instants {
             quantities,
             layout,
             values: vec![0.0; n * quantities.len()],
-            states: vec![State { q: z(), qd: z(), qdd: z() }; n],
-            inverse: vec![0.0; n * inverse_length(nq, nj, nc)],
+            states: vec![0.0; n * 3 * nq],
+            inverse: vec![0.0; collocation * inverse_length(nq, nj, nc)],
+            further: vec![0.0; nq + nj + 2 * nc],
             placement: vec![0.0; n * placement_length(nq, nc)],
             swing: [vec![0.0; nc + nc * 2 * nq], vec![0.0; nc + nc * 2 * nq]],
             sharing: vec![0.0; n * sharing_length(nq, quantities.shared)],
@@ -175,6 +170,12 @@ impl Instants {
         &self.gradients[node * size..][..size]
     }
 
+    /// q, q̇ and q̈ at a node.
+    pub fn state(&self, d: &Description, node: usize) -> [&[f64]; 3] {
+        let nq = d.orientations();
+        [0, 1, 2].map(|order| &self.states[(3 * node + order) * nq..][..nq])
+    }
+
     /// Position of the platform's mass centre from the stance foot at a node, m.
     pub fn platform(&self, description: &Description, node: usize) -> &[f64] {
         &self.placement(description, node)[..description.positions()]
@@ -186,7 +187,7 @@ impl Instants {
         &self.placement[node * length..][..length]
     }
 
-    /// Jacobian of the `inverse_jacobian` kernel at a node: rows Γ, F, balance; columns q, q̇, q̈.
+    /// Jacobian of the `inverse_jacobian` kernel at a collocation node: rows Γ, F, balance; columns q, q̇, q̈.
     pub fn jacobian(&self, d: &Description, node: usize) -> &[f64] {
         let (nq, nj, nc) = (d.orientations(), d.joints(), d.positions());
         &self.inverse[node * inverse_length(nq, nj, nc)..][1 + nj + nc..][..(nj + nc + 1) * 3 * nq]
@@ -210,29 +211,37 @@ impl Instants {
         let t = parameters[self.layout.duration()];
         let last = mesh.collocation() - 1;
         let y = self.quantities;
-        let inverse_rows = self.inverse.chunks_mut(inverse_length(nq, nj, nc));
         let placement_rows = self.placement.chunks_mut(placement_length(nq, nc));
-        let value_rows = self.values.chunks_mut(y.len());
-        let rows = self.states.iter_mut().zip(inverse_rows).zip(placement_rows).zip(value_rows);
-        for (k, (((state, inverse), placement), values)) in rows.enumerate() {
+        let rows = self.states.chunks_mut(3 * nq).zip(placement_rows).zip(self.values.chunks_mut(y.len()));
+        for (k, ((state, placement), values)) in rows.enumerate() {
             let s = mesh.nodes[k].0;
-            let [q, qd, qdd] = stance.prescribed.at(k);
+            let [prescribed, rates, accelerations] = stance.prescribed.at(k);
+            let (q, rest) = state.split_at_mut(nq);
+            let (qd, qdd) = rest.split_at_mut(nq);
             for j in 0..self.layout.prescribed {
                 let index = d.prescribed_index(j);
-                (state.q[index], state.qd[index], state.qdd[index]) = (q[j], qd[j], qdd[j]);
+                (q[index], qd[index], qdd[index]) = (prescribed[j], rates[j], accelerations[j]);
             }
-            state.q[d.unactuated] = stance.beta[k];
-            state.qd[d.unactuated] = stance.betad[k];
-            gait.inverse_jacobian(leg, &state.q, &state.qd, qdd, inverse);
-            state.qdd[d.unactuated] = inverse[0];
-            gait.placement(leg, &state.q, placement);
-            values[..nj + nc].copy_from_slice(&inverse[1..1 + nj + nc]);
-            values[y.angle(0)..y.angle(0) + nj].copy_from_slice(&state.q[..nj]);
-            values[y.rate(0)..y.rate(0) + nj].copy_from_slice(&state.qd[..nj]);
+            (q[d.unactuated], qd[d.unactuated]) = (stance.beta[k], stance.betad[k]);
+            // Only the collocation nodes are differentiated.
+            let (betadd, forces) = if k <= last {
+                let length = inverse_length(nq, nj, nc);
+                let inverse = &mut self.inverse[k * length..][..length];
+                gait.inverse_jacobian(leg, q, qd, accelerations, inverse);
+                (inverse[0], &inverse[1..1 + nj + nc])
+            } else {
+                gait.inverse(leg, q, qd, accelerations, &mut self.further);
+                (self.further[nc + d.unactuated], &self.further[nc + nq..])
+            };
+            qdd[d.unactuated] = betadd;
+            values[..nj + nc].copy_from_slice(forces);
+            gait.placement(leg, q, placement);
+            values[y.angle(0)..y.angle(0) + nj].copy_from_slice(&q[..nj]);
+            values[y.rate(0)..y.rate(0) + nj].copy_from_slice(&qd[..nj]);
             values[y.height()] = placement[1];
             values[y.clearance()] = if k == 0 || k == last {
                 let end = usize::from(k == last);
-                gait.swing_velocity(leg, &state.q, &state.qd, &mut self.swing[end]);
+                gait.swing_velocity(leg, q, qd, &mut self.swing[end]);
                 direction(end) * self.swing[end][1] * t
             } else {
                 placement[nc + 1] / (4.0 * s * (1.0 - s))
@@ -240,7 +249,7 @@ impl Instants {
             if y.shared > 0 {
                 let length = sharing_length(nq, y.shared);
                 let sharing = &mut self.sharing[k * length..][..length];
-                gait.sharing(leg, &state.q, &state.qd, &state.qdd, sharing);
+                gait.sharing(leg, q, qd, qdd, sharing);
                 values[y.shared()].copy_from_slice(&sharing[..y.shared]);
             }
         }

@@ -5,6 +5,7 @@
 //! is the paper's, with one interior value at T/2.
 
 use nalgebra::DMatrix;
+use smallvec::SmallVec;
 
 /// Basis polynomials of one order.
 #[derive(Clone, Debug)]
@@ -17,10 +18,13 @@ pub struct Basis {
 /// Value, first and second derivative in s of every basis polynomial at one s.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Jet {
-    pub value: Vec<f64>,
-    pub first: Vec<f64>,
-    pub second: Vec<f64>,
+    pub value: PerParameter,
+    pub first: PerParameter,
+    pub second: PerParameter,
 }
+
+/// A number for each parameter of a polynomial.
+type PerParameter = SmallVec<[f64; 6]>;
 
 impl Basis {
     /// Order 4 or more.

@@ -171,7 +171,7 @@ impl Role<'_> {
         let (nc, nj, nq) = (d.positions(), d.joints(), d.orientations());
         let sample = cycle.sample(phase, node);
         let at = |p: Point| [0, 1, 2].map(|k| p[k] + stance_foot[k]);
-        let [q, qd, qdd] = [&sample.state.q, &sample.state.qd, &sample.state.qdd].map(|v| self.renamed(v));
+        let [q, qd, qdd] = sample.state.map(|v| self.renamed(v));
         let prescribed: Vec<f64> = (0..d.prescribed()).map(|k| qdd[d.prescribed_index(k)]).collect();
         let mut velocity = vec![0.0; nc];
         self.gait.platform_velocity(self.leg, &q, &qd, &mut velocity);

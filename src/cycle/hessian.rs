@@ -501,11 +501,11 @@ impl PhaseWork {
         self.n[nj] = balance;
         let (height, velocity) = self.swing_weights(p, node);
         let others = [chi, kappa, height, self.travel_weight(p, node), velocity, w[y.height()]];
-        let state = &p.instants.states[node];
-        gait.curvature(p.leg, &state.q, &state.qd, &state.qdd, &self.n, &w[y.force(0)..][..nc], &others, &mut self.out);
+        let [q, qd, qdd] = p.instants.state(d, node);
+        gait.curvature(p.leg, q, qd, qdd, &self.n, &w[y.force(0)..][..nc], &others, &mut self.out);
         let shared = &w[y.shared()];
         if shared.iter().any(|w| *w != 0.0) {
-            gait.sharing_curvature(p.leg, &state.q, &state.qd, &state.qdd, shared, &mut self.shared);
+            gait.sharing_curvature(p.leg, q, qd, qdd, shared, &mut self.shared);
             self.out.iter_mut().zip(&self.shared).for_each(|(out, shared)| *out += shared);
         }
         let (gradient, blocks) = self.out.split_at(3 * nq);

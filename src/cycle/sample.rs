@@ -1,13 +1,13 @@
 //! What the last simulated motion is at its instants: for whoever shows it.
 
 use super::Cycle;
-use crate::instant::State;
 
 /// One instant of a half step. Positions are from the stance foot, world axes, m.
 pub struct Sample<'a> {
     /// Time as a share of the half step.
     pub share: f64,
-    pub state: &'a State,
+    /// q, q̇ and q̈.
+    pub state: [&'a [f64]; 3],
     /// The quantities of an instant: see `Quantities`.
     pub quantities: &'a [f64],
     /// Platform's mass centre.
@@ -24,7 +24,7 @@ impl Cycle<'_> {
         let placement = p.instants.placement(d, node);
         Sample {
             share: p.mesh.nodes[node].0,
-            state: &p.instants.states[node],
+            state: p.instants.state(d, node),
             quantities: p.instants.row(node),
             platform: &placement[..nc],
             swing: &placement[nc..2 * nc],

@@ -1,7 +1,6 @@
 //! A half step of the gait and the landing that ends it, with what small deviations need to know of them.
 
 use crate::cycle::{elements, renamed};
-use crate::instant::State;
 use crate::model::Gait;
 use crate::motion::{HalfStep, Motion};
 use crate::stance::{Layout, Mesh, Stance, Undefined};
@@ -21,6 +20,14 @@ pub struct Passage {
     pub landing: Landing,
     /// The beginning of the half step that follows.
     pub next: Start,
+}
+
+/// The state at an instant.
+#[derive(Clone, Debug, Default)]
+pub struct State {
+    pub q: Vec<f64>,
+    pub qd: Vec<f64>,
+    pub qdd: Vec<f64>,
 }
 
 /// One instant of the motion.

@@ -26,6 +26,7 @@ pub struct Multibody<'a, T = f64> {
     description: &'a Description,
     numbers: Numbers<T>,
     frames: Vec<Frame<T>>,
+    coms: Vec<Point<T>>,
     /// Body that coordinate k of q turns on its parent (θ: the platform on the world).
     carriers: Vec<usize>,
     /// Whether coordinate k moves body b, at `k * bodies + b`.
@@ -43,7 +44,6 @@ struct Frame<T> {
     spin: Vec3<T>,
     spin_rate: Vec3<T>,
     joint: Point<T>,
-    com: Point<T>,
 }
 
 /// A point with its motion relative to the platform's mass centre; m, m/s, m/s².
@@ -77,7 +77,16 @@ impl<'a, T: Scalar> Multibody<'a, T> {
             }
         }
         let still = Frame::still();
-        Multibody { description, numbers, frames: vec![still; count], carriers, moves, feet: [still.joint; 2] }
+        let origin = still.joint;
+        Multibody {
+            description,
+            numbers,
+            frames: vec![still; count],
+            coms: vec![origin; count],
+            carriers,
+            moves,
+            feet: [origin; 2],
+        }
     }
 
     pub fn description(&self) -> &'a Description {
@@ -99,47 +108,40 @@ impl<'a, T: Scalar> Multibody<'a, T> {
     pub fn set(&mut self, q: &[T], qd: &[T], qdd: &[T]) {
         let axis = if self.description.rotation == Rotation::Roll { 0 } else { 2 };
         let theta = self.description.joints();
-        for (b, (body, numbers)) in self.description.bodies.iter().zip(&self.numbers.bodies).enumerate() {
+        let bodies = self.description.bodies.iter().zip(&self.numbers.bodies);
+        for (b, ((body, numbers), com)) in bodies.zip(&mut self.coms).enumerate() {
             let (above, here) = self.frames.split_at_mut(b);
             let Some(frame) = here.first_mut() else { continue };
             match body.parent.and_then(|parent| above.get(parent)) {
                 Some(parent) => {
-                    frame.joint = parent.point(&parent.in_world(&numbers.offset));
+                    parent.locate(&numbers.offset, &mut frame.joint);
                     frame.follow(parent);
                 }
-                None => frame.follow(&Frame::still()),
+                None => frame.rest(),
             }
             match body.coordinate {
                 Some(k) => frame.turn(body.axis, q[k], qd[k], qdd[k]),
                 None if b == 0 && theta < q.len() => frame.turn(axis, q[theta], qd[theta], qdd[theta]),
                 None => {}
             }
-            frame.com = frame.point(&frame.in_world(&numbers.com));
+            frame.locate(&numbers.com, com);
         }
         for ((foot, leg), arm) in self.feet.iter_mut().zip(&self.description.legs).zip(&self.numbers.feet) {
-            let frame = &self.frames[leg.foot_body];
-            *foot = frame.point(&frame.in_world(arm));
+            self.frames[leg.foot_body].locate(arm, foot);
+        }
+        if !self.description.lateral {
+            self.coms.iter_mut().chain(&mut self.feet).for_each(Point::flatten);
         }
     }
 
     /// The foot of a leg, relative to the platform's mass centre.
-    pub fn foot(&self, leg: usize) -> Point<T> {
-        let foot = self.feet[leg];
-        Point {
-            position: foot.position,
-            velocity: self.in_plane(foot.velocity),
-            acceleration: self.in_plane(foot.acceleration),
-        }
+    pub fn foot(&self, leg: usize) -> &Point<T> {
+        &self.feet[leg]
     }
 
     /// The mass centre of a body, relative to the platform's.
-    pub fn com(&self, body: usize) -> Point<T> {
-        let com = self.frames[body].com;
-        Point {
-            position: com.position,
-            velocity: self.in_plane(com.velocity),
-            acceleration: self.in_plane(com.acceleration),
-        }
+    pub fn com(&self, body: usize) -> &Point<T> {
+        &self.coms[body]
     }
 
     /// Angular velocity of a body, rad/s.
@@ -164,7 +166,11 @@ impl<'a, T: Scalar> Multibody<'a, T> {
             return Vec3::zeros();
         }
         let (axis, joint) = self.axis(k);
-        self.in_plane(axis.cross(&(position - joint)))
+        let mut velocity = axis.cross(&(position - joint));
+        if !self.description.lateral {
+            velocity.z = T::zero();
+        }
+        velocity
     }
 
     /// Partial angular velocity of a body in q̇ₖ.
@@ -250,7 +256,7 @@ impl<'a, T: Scalar> Multibody<'a, T> {
             return (unit(k), Vec3::zeros());
         }
         let k = k - positions;
-        (self.partial_velocity(k, body, &self.frames[body].com.position), self.partial_spin(k, body))
+        (self.partial_velocity(k, body, &self.coms[body].position), self.partial_spin(k, body))
     }
 
     /// Inertia that a rotor adds to coordinate `k` of X: it turns with its joint, gear² times as heavy.
@@ -264,12 +270,13 @@ impl<'a, T: Scalar> Multibody<'a, T> {
         // Rows for columns: it is symmetric.
         combined(&self.numbers.bodies[body].inertia, v)
     }
+}
 
-    fn in_plane(&self, mut v: Vec3<T>) -> Vec3<T> {
-        if !self.description.lateral {
-            v.z = T::zero();
-        }
-        v
+impl<T: Scalar> Point<T> {
+    /// Leaves out its motion across the sagittal plane.
+    fn flatten(&mut self) {
+        self.velocity.z = T::zero();
+        self.acceleration.z = T::zero();
     }
 }
 
@@ -278,7 +285,7 @@ impl<T: Scalar> Frame<T> {
     fn still() -> Self {
         let zero = Vec3::zeros();
         let origin = Point { position: zero, velocity: zero, acceleration: zero };
-        Frame { axes: [0, 1, 2].map(unit), axis: zero, spin: zero, spin_rate: zero, joint: origin, com: origin }
+        Frame { axes: [0, 1, 2].map(unit), axis: zero, spin: zero, spin_rate: zero, joint: origin }
     }
 
     fn in_world(&self, v: &Vec3<T>) -> Vec3<T> {
@@ -289,14 +296,20 @@ impl<T: Scalar> Frame<T> {
         Vec3::from(self.axes.map(|axis| axis.dot(v)))
     }
 
-    /// The point of this body that is `arm` away from its joint.
-    fn point(&self, arm: &Vec3<T>) -> Point<T> {
-        let swirl = self.spin.cross(arm);
-        Point {
-            position: self.joint.position + arm,
-            velocity: self.joint.velocity + swirl,
-            acceleration: self.joint.acceleration + self.spin_rate.cross(arm) + self.spin.cross(&swirl),
-        }
+    /// Moves `point` to where this body has it: `arm` away from its joint, in its own axes.
+    fn locate(&self, arm: &Vec3<T>, point: &mut Point<T>) {
+        let arm = self.in_world(arm);
+        let swirl = self.spin.cross(&arm);
+        point.position = self.joint.position + arm;
+        point.velocity = self.joint.velocity + swirl;
+        point.acceleration = self.joint.acceleration + self.spin_rate.cross(&arm) + self.spin.cross(&swirl);
+    }
+
+    /// Takes over the world's axes, at rest.
+    fn rest(&mut self) {
+        self.axes = [0, 1, 2].map(unit);
+        self.spin = Vec3::zeros();
+        self.spin_rate = Vec3::zeros();
     }
 
     /// Takes over the rotation and spin of the body above.

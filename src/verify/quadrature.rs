@@ -6,41 +6,69 @@
 
 /// ∫ w dt of at least four values, `spacing` apart.
 pub fn integral(values: &[f64], spacing: f64) -> f64 {
-    cubics(values).map(|cubic| primitive(&cubic, 1.0)).sum::<f64>() * spacing
+    intervals(values).map(|interval| interval.whole()).sum::<f64>() * spacing
 }
 
 /// ∫ |w| dt of at least four values, `spacing` apart.
 pub fn integral_of_magnitude(values: &[f64], spacing: f64) -> f64 {
-    let magnitude = |cubic: [f64; 4]| {
-        let (whole, end) = (primitive(&cubic, 1.0), value(&cubic, 1.0));
-        if cubic[0] * end >= 0.0 {
+    let magnitude = |interval: Interval| {
+        let whole = interval.whole();
+        if !interval.changes_sign() {
             return whole.abs();
         }
+        let cubic = interval.cubic();
         let first = primitive(&cubic, root(&cubic));
         first.abs() + (whole - first).abs()
     };
-    cubics(values).map(magnitude).sum::<f64>() * spacing
+    intervals(values).map(magnitude).sum::<f64>() * spacing
 }
 
-/// Coefficients 1, u, u², u³ of the cubic of each interval, u from 0 to 1 over it.
-fn cubics(values: &[f64]) -> impl Iterator<Item = [f64; 4]> + '_ {
-    let intervals = values.len().saturating_sub(1);
-    (0..intervals).filter_map(move |i| {
-        // The first of the four points; the first and last interval have no outer neighbour.
+/// One interval of the grid, of unit length, with the four values nearest to it.
+struct Interval {
+    values: [f64; 4],
+    /// Which of them it begins at: the first and the last interval have no outer neighbour.
+    begin: usize,
+}
+
+fn intervals(values: &[f64]) -> impl Iterator<Item = Interval> + '_ {
+    let count = values.len().saturating_sub(1);
+    (0..count).filter_map(move |i| {
         let first = i.saturating_sub(1).min(values.len().checked_sub(4)?);
-        let [a, b, c, d]: [f64; 4] = values[first..first + 4].try_into().ok()?;
+        Some(Interval { values: values[first..first + 4].try_into().ok()?, begin: i - first })
+    })
+}
+
+impl Interval {
+    fn changes_sign(&self) -> bool {
+        self.values[self.begin] * self.values[self.begin + 1] < 0.0
+    }
+
+    /// The integral of the cubic.
+    fn whole(&self) -> f64 {
+        let [a, b, c, d] = self.values;
+        let sum = match self.begin {
+            0 => 9.0 * a + 19.0 * b - 5.0 * c + d,
+            1 => 13.0 * (b + c) - (a + d),
+            _ => a - 5.0 * b + 19.0 * c + 9.0 * d,
+        };
+        sum / 24.0
+    }
+
+    /// Coefficients 1, u, u², u³ of the cubic, u from 0 to 1 over the interval.
+    fn cubic(&self) -> [f64; 4] {
+        let [a, b, c, d] = self.values;
         let [first_difference, second, third] = [b - a, c - 2.0 * b + a, d - 3.0 * (c - b) - a];
-        // a + f x + s x(x−1)/2 + t x(x−1)(x−2)/6 in powers of x = u + offset.
+        // a + f x + s x(x−1)/2 + t x(x−1)(x−2)/6 in powers of x = u + begin.
         let [s, t] = [second / 2.0, third / 6.0];
         let by_x = [a, first_difference - s + 2.0 * t, s - 3.0 * t, t];
-        let o = (i - first) as f64;
-        Some([
+        let o = self.begin as f64;
+        [
             by_x[0] + o * (by_x[1] + o * (by_x[2] + o * by_x[3])),
             by_x[1] + o * (2.0 * by_x[2] + 3.0 * o * by_x[3]),
             by_x[2] + 3.0 * o * by_x[3],
             by_x[3],
-        ])
-    })
+        ]
+    }
 }
 
 fn value(c: &[f64; 4], u: f64) -> f64 {

@@ -81,12 +81,10 @@ impl<'a, T: Scalar> Support<'a, T> {
             let mut acceleration = com.acceleration - stance.acceleration;
             acceleration.y += numbers.gravity;
             let partial = |k| multibody.partial_velocity(k, b, &com.position);
-            *load = Load {
-                force: acceleration * body.mass,
-                moment: multibody.spin_moment(b),
-                force_per_beta: (partial(beta) - beta_of_stance) * body.mass,
-                moment_per_beta: multibody.spin_momentum(b, &multibody.partial_spin(beta, b)),
-            };
+            load.force = acceleration * body.mass;
+            load.moment = multibody.spin_moment(b);
+            load.force_per_beta = (partial(beta) - beta_of_stance) * body.mass;
+            load.moment_per_beta = multibody.spin_momentum(b, &multibody.partial_spin(beta, b));
             let arm = com.position - stance.position;
             balance += moment_about(*axis, &arm, &load.force) + load.moment[*axis];
             f1 += moment_about(*axis, &arm, &load.force_per_beta) + load.moment_per_beta[*axis];
