@@ -1,7 +1,5 @@
 //! The pinned sine and cosine against a double-double Taylor series, in units in the last place.
 
-// Kernels use all of it, this test a part.
-#[allow(dead_code, clippy::too_many_arguments)]
 #[path = "../support/math.rs"]
 mod math;
 
@@ -155,37 +153,20 @@ fn pinned_bits() {
 
 const PINNED: &str = "228ac002a50541ff";
 
-/// Many angles at once have, lane by lane, the bits of one.
+/// Several angles at once, side by side or in step, have the bits of each on its own.
 #[test]
-fn lanes_are_single_angles() {
-    let x: [f64; 64] = std::array::from_fn(|i| (i as f64 - 31.5).powi(3));
-    let (mut sin, mut cos) = ([0.0; 64], [0.0; 64]);
-    math::sin_cos_batch(&x, &mut sin, &mut cos);
-    for i in 0..64 {
-        let (s, c) = math::sin_cos(x[i]);
-        assert_eq!((s.to_bits(), c.to_bits()), (sin[i].to_bits(), cos[i].to_bits()));
-        assert!((s - x[i].sin()).abs() < 1e-15 && (c - x[i].cos()).abs() < 1e-15);
+fn angles_at_once_are_single_angles() {
+    fn agree<const N: usize>(x: [f64; N]) {
+        let bits = |pairs: [(f64, f64); N]| pairs.map(|(s, c)| (s.to_bits(), c.to_bits()));
+        let single = bits(x.map(math::sin_cos));
+        assert_eq!(bits(math::sin_cos_together(x)), single);
+        assert_eq!(bits(math::sin_cos_in_step(x)), single);
     }
-}
-
-/// So have a few angles together, whatever their number.
-#[test]
-fn angles_together_are_single_angles() {
-    fn agree<const N: usize>(angles: &[f64], both: [[f64; N]; 2]) {
-        for (k, x) in angles.iter().enumerate() {
-            let (s, c) = math::sin_cos(*x);
-            assert_eq!((s.to_bits(), c.to_bits()), (both[0][k].to_bits(), both[1][k].to_bits()));
-        }
-    }
-    for shift in [-7.0, 0.0, 1.5e3] {
-        let x: [f64; 8] = std::array::from_fn(|i| 1.3 * i as f64 + shift);
-        let [a, b, c, d, e, f, g, h] = x;
-        agree(&x[..2], math::sin_cos_2(a, b));
-        agree(&x[..3], math::sin_cos_3(a, b, c));
-        agree(&x[..4], math::sin_cos_4(a, b, c, d));
-        agree(&x[..5], math::sin_cos_5(a, b, c, d, e));
-        agree(&x[..6], math::sin_cos_6(a, b, c, d, e, f));
-        agree(&x[..7], math::sin_cos_7(a, b, c, d, e, f, g));
-        agree(&x[..8], math::sin_cos_8(a, b, c, d, e, f, g, h));
+    for k in 0..200 {
+        let [a, b, c, d] = std::array::from_fn(|i| f64::from(4 * k + i as i32 - 400).powi(3) * 1e-3);
+        agree([a]);
+        agree([a, b]);
+        agree([a, b, c]);
+        agree([a, b, c, d]);
     }
 }

@@ -14,7 +14,7 @@ pub fn source(function: &Function) -> String {
     let kernel = &function.kernel;
     let single = &kernel.name;
     let mut source = format!("/// [`{single}`] of one of many states.\n#[inline(always)]\n");
-    function.write(&format!("fn {single}_lane("), Sines::Alone, &mut source);
+    function.write(&format!("fn {single}_lane("), Sines::InStep, &mut source);
     let _ = writeln!(
         source,
         "/// [`{single}`] of `N` states, with the same bits. Vectors and matrices are of lanes.\n#[inline]"

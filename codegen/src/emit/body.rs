@@ -13,16 +13,16 @@ use std::fmt::Write;
 /// Bindings per scope.
 const BLOCK: usize = 200;
 
-/// Angles whose sine and cosine one function evaluates at most.
-const TOGETHER: usize = 8;
+/// Angles whose sines and cosines are evaluated at once, at most.
+const AT_ONCE: usize = 4;
 
 /// How sines and cosines are evaluated; the bits are the same.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub enum Sines {
-    /// Side by side, in a function of their own: fast for one state.
+    /// Side by side in a vector register: fast for one state.
     Together,
-    /// Each on its own, in line: so that a loop around the kernel takes many states side by side.
-    Alone,
+    /// In step, but each on its own: a loop around the kernel takes many states side by side.
+    InStep,
 }
 
 /// A program as it is written: what its nodes are called, and which of them anything needs.
@@ -42,10 +42,7 @@ struct Binding {
 
 /// Writes the body of a function.
 pub fn write(function: &Function, sines: Sines, out: &mut String) {
-    let order = match sines {
-        Sines::Together => function.program.schedule_sines_first(),
-        Sines::Alone => function.program.schedule(),
-    };
+    let order = function.program.schedule_sines_first();
     let mut used = vec![false; function.program.nodes.len()];
     order.iter().for_each(|id| used[*id as usize] = true);
     let names = function.program.nodes.iter().enumerate().map(|(id, node)| name(function, id, *node)).collect();
@@ -119,53 +116,57 @@ impl Body<'_> {
         }
     }
 
+    /// Arguments of sines and cosines, with the nodes that are their sine and cosine.
+    fn sines(&self) -> Vec<(usize, [Option<Id>; 2])> {
+        let mut sines: Vec<(usize, [Option<Id>; 2])> = Vec::new();
+        for id in &self.order {
+            let (argument, which) = match self.function.program.nodes[*id as usize] {
+                Node::Sin(s) => (s, 0),
+                Node::Cos(s) => (s, 1),
+                _ => continue,
+            };
+            let known = sines.iter().position(|(s, _)| *s == argument);
+            let k = known.unwrap_or_else(|| {
+                sines.push((argument, [None; 2]));
+                sines.len() - 1
+            });
+            sines[k].1[which] = Some(*id);
+        }
+        sines
+    }
+
     fn bindings(&self) -> Vec<Binding> {
         let program = &self.function.program;
-        // Sine and cosine of each argument.
-        let mut pairs = vec![[None; 2]; program.sums.len()];
-        for id in &self.order {
-            match program.nodes[*id as usize] {
-                Node::Sin(s) => pairs[s][0] = Some(*id),
-                Node::Cos(s) => pairs[s][1] = Some(*id),
-                _ => {}
-            }
-        }
-        let at_once = if self.sines == Sines::Together { TOGETHER } else { 1 };
+        let mut sines = self.sines();
         let mut bindings = Vec::with_capacity(self.order.len());
-        let mut order = self.order.iter().map(|id| (*id, program.nodes[*id as usize])).peekable();
-        while let Some((id, node)) = order.next() {
-            let name = &self.names[id as usize];
-            let text = match node {
+        for id in &self.order {
+            let name = &self.names[*id as usize];
+            let text = match program.nodes[*id as usize] {
                 Node::Input(..) => continue,
-                Node::Sin(s) | Node::Cos(s) => {
-                    // With those that follow at once. Each argument is taken once, whichever of the two comes first.
-                    let mut run = vec![s];
-                    while let Some((_, Node::Sin(s) | Node::Cos(s))) = order.peek() {
-                        run.push(*s);
-                        order.next();
-                    }
-                    let run: Vec<_> = run.into_iter().map(|s| (s, std::mem::take(&mut pairs[s]))).collect();
-                    let run: Vec<_> = run.into_iter().filter(|(_, pair)| *pair != [None; 2]).collect();
-                    bindings.extend(run.chunks(at_once).map(|pairs| self.sines_of(pairs)));
+                Node::Sin(_) | Node::Cos(_) => {
+                    // They follow one another: with the first, all are bound.
+                    let sines = std::mem::take(&mut sines);
+                    bindings.extend(sines.chunks(AT_ONCE).map(|pairs| self.sines_of(pairs)));
                     continue;
                 }
                 Node::Value(s) => format!("let {name} = {};", self.sum(&program.sums[s])),
                 Node::Reciprocal(s) => format!("let {name} = 1.0 / ({});", self.sum(&program.sums[s])),
             };
-            bindings.push(Binding { nodes: vec![id], text });
+            bindings.push(Binding { nodes: vec![*id], text });
         }
         bindings
     }
 
     /// Sines and cosines of the arguments that are these sums.
     fn sines_of(&self, pairs: &[(usize, [Option<Id>; 2])]) -> Binding {
-        let arguments: Vec<String> = pairs.iter().map(|(s, _)| self.sum(&self.function.program.sums[*s])).collect();
-        let arguments = arguments.join(", ");
+        let arguments: Vec<_> = pairs.iter().map(|(s, _)| self.sum(&self.function.program.sums[*s])).collect();
         let name = |id: Option<Id>| id.map_or("_", |id| &self.names[id as usize]);
-        let [sin, cos] = [0, 1].map(|k| pairs.iter().map(|(_, pair)| name(pair[k])).collect::<Vec<_>>().join(", "));
-        let text = match pairs.len() {
-            1 => format!("let ({sin}, {cos}) = math::sin_cos({arguments});"),
-            n => format!("let [[{sin}, ..], [{cos}, ..]] = math::sin_cos_{n}({arguments});"),
+        let values: Vec<_> = pairs.iter().map(|(_, [sin, cos])| format!("({}, {})", name(*sin), name(*cos))).collect();
+        let (arguments, values) = (arguments.join(", "), values.join(", "));
+        let text = match (pairs.len(), self.sines) {
+            (1, _) => format!("let {values} = math::sin_cos({arguments});"),
+            (_, Sines::Together) => format!("let [{values}] = math::sin_cos_together([{arguments}]);"),
+            (_, Sines::InStep) => format!("let [{values}] = math::sin_cos_in_step([{arguments}]);"),
         };
         Binding { nodes: pairs.iter().flat_map(|(_, pair)| pair).flatten().copied().collect(), text }
     }
