@@ -22,7 +22,7 @@ use crate::stance::Stance;
 use std::array::from_fn;
 
 /// Share of an element per change of power over slope, beyond which a kink's curvature is averaged.
-const REACH: f64 = 1.0;
+const REACH: f64 = 0.3;
 
 /// Memory of the computation, allocated once.
 #[derive(Default)]

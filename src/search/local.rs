@@ -44,9 +44,9 @@ pub struct Conflict {
     pub weight: f64,
 }
 
-/// The kinks of |power| are rounded off first, by these shares of weight times speed: far from the
+/// The kinks of |power| are rounded off first, by this share of weight times speed: far from the
 /// optimum a kink tells a step more than is true.
-const SMOOTHING: [f64; 2] = [0.12, 0.012];
+const SMOOTHING: f64 = 0.1;
 
 /// Options of the solver for a problem of this kind.
 pub fn options(cycle: &Cycle) -> Options {
@@ -63,7 +63,7 @@ pub fn options(cycle: &Cycle) -> Options {
 
 /// Options of the solver where an approximate solution will do.
 fn rough(options: &Options) -> Options {
-    Options { tolerance: 1e-2, feasibility: 1e-3, ..options.clone() }
+    Options { tolerance: 5e-2, feasibility: 1e-3, ..options.clone() }
 }
 
 /// Called at every iteration; can stop the search.
@@ -104,20 +104,13 @@ impl Task<'_> {
 
     /// An approximate optimum of `cycle`, then the optimum.
     fn approach(&self, mut cycle: Cycle, start: &[f64], options: &Options, observe: Observer) -> Local {
-        let (mut theta, mut iterations) = (start.to_vec(), 0);
-        let smoothing: &[f64] = match self.criterion {
-            Criterion::Energy => &SMOOTHING,
-            Criterion::Torque => &[0.0],
-        };
-        for share in smoothing {
+        if self.criterion == Criterion::Energy {
             let d = self.gait.description();
-            cycle.smoothing = share * d.total_mass() * d.gravity * self.speed;
-            let solution = sqp::minimize(&mut cycle, &theta, &rough(options), observe);
-            iterations += solution.iterations;
-            theta = solution.x;
+            cycle.smoothing = SMOOTHING * d.total_mass() * d.gravity * self.speed;
         }
-        let local = self.polish(&theta, observe);
-        Local { iterations: iterations + local.iterations, ..local }
+        let solution = sqp::minimize(&mut cycle, start, &rough(options), observe);
+        let local = self.polish(&solution.x, observe);
+        Local { iterations: solution.iterations + local.iterations, ..local }
     }
 
     /// The optimum near `start`, with constraints imposed between nodes where they dip.
