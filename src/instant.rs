@@ -5,7 +5,7 @@
 
 use crate::constraints::sharing;
 use crate::model::{Description, Gait};
-use crate::stance::{Layout, Mesh, Stance, basis_derivatives};
+use crate::stance::{Layout, Mesh, Stance, State, Undefined, basis_derivatives};
 
 /// Where each quantity stands.
 #[derive(Clone, Copy, Debug)]
@@ -57,6 +57,15 @@ impl Quantities {
         self.height() + 1..self.height() + 1 + self.shared
     }
 
+    /// Writes what follows from the state itself, and torques and reaction.
+    fn write(&self, values: &mut [f64], q: &[f64], qd: &[f64], forces: &[f64], height: f64) {
+        let nj = self.joints;
+        values[..nj + self.components].copy_from_slice(forces);
+        values[self.angle(0)..][..nj].copy_from_slice(&q[..nj]);
+        values[self.rate(0)..][..nj].copy_from_slice(&qd[..nj]);
+        values[self.height()] = height;
+    }
+
     pub fn len(&self) -> usize {
         self.shared().end
     }
@@ -106,10 +115,8 @@ pub struct Instants {
     pub values: Vec<f64>,
     /// q, q̇ and q̈, a row per node.
     states: Vec<f64>,
-    /// Results of the `inverse_jacobian` kernel, a row per collocation node, and of `inverse` at the last of the others.
+    /// Results of the `inverse_jacobian` and `placement` kernels, a row per node, and of `swing_velocity` at both ends.
     inverse: Vec<f64>,
-    further: Vec<f64>,
-    /// Results of the `placement` kernel, a row per node, and of `swing_velocity` at both ends.
     placement: Vec<f64>,
     swing: [Vec<f64>; 2],
     /// Results of the `sharing` kernel, a row per node; none if nothing shared is looked at.
@@ -127,20 +134,19 @@ impl Instants {
         let quantities = Quantities::new(description);
         let layout = Layout::new(description, &mesh.basis);
         let (nq, nj, nc) = (description.orientations(), description.joints(), description.positions());
-        let (n, collocation) = (mesh.nodes.len(), mesh.collocation());
+        let n = mesh.nodes.len();
         Instants {
             quantities,
             layout,
             values: vec![0.0; n * quantities.len()],
             states: vec![0.0; n * 3 * nq],
-            inverse: vec![0.0; collocation * inverse_length(nq, nj, nc)],
-            further: vec![0.0; nq + nj + 2 * nc],
+            inverse: vec![0.0; n * inverse_length(nq, nj, nc)],
             placement: vec![0.0; n * placement_length(nq, nc)],
             swing: [vec![0.0; nc + nc * 2 * nq], vec![0.0; nc + nc * 2 * nq]],
             sharing: vec![0.0; n * sharing_length(nq, quantities.shared)],
-            gradients: vec![0.0; collocation * quantities.len() * layout.len()],
-            betadd_p: vec![0.0; collocation * layout.len()],
-            basis: vec![[0.0; 3]; collocation * layout.per_joint],
+            gradients: vec![0.0; n * quantities.len() * layout.len()],
+            betadd_p: vec![0.0; n * layout.len()],
+            basis: vec![[0.0; 3]; n * layout.per_joint],
         }
     }
 
@@ -187,7 +193,7 @@ impl Instants {
         &self.placement[node * length..][..length]
     }
 
-    /// Jacobian of the `inverse_jacobian` kernel at a collocation node: rows Γ, F, balance; columns q, q̇, q̈.
+    /// Jacobian of the `inverse_jacobian` kernel at a node: rows Γ, F, balance; columns q, q̇, q̈.
     pub fn jacobian(&self, d: &Description, node: usize) -> &[f64] {
         let (nq, nj, nc) = (d.orientations(), d.joints(), d.positions());
         &self.inverse[node * inverse_length(nq, nj, nc)..][1 + nj + nc..][..(nj + nc + 1) * 3 * nq]
@@ -199,7 +205,7 @@ impl Instants {
         &self.sharing[node * length..][..length][self.quantities.shared..]
     }
 
-    /// Result of the `swing_velocity` kernel at the first (0) or last (1) collocation node.
+    /// Result of the `swing_velocity` kernel at the first (0) or last (1) node.
     pub fn swing_velocity(&self, end: usize) -> &[f64] {
         &self.swing[end]
     }
@@ -209,11 +215,13 @@ impl Instants {
         let d = gait.description();
         let (nq, nj, nc) = (d.orientations(), d.joints(), d.positions());
         let t = parameters[self.layout.duration()];
-        let last = mesh.collocation() - 1;
+        let last = mesh.nodes.len() - 1;
         let y = self.quantities;
+        let inverse_rows = self.inverse.chunks_mut(inverse_length(nq, nj, nc));
         let placement_rows = self.placement.chunks_mut(placement_length(nq, nc));
-        let rows = self.states.chunks_mut(3 * nq).zip(placement_rows).zip(self.values.chunks_mut(y.len()));
-        for (k, ((state, placement), values)) in rows.enumerate() {
+        let value_rows = self.values.chunks_mut(y.len());
+        let rows = self.states.chunks_mut(3 * nq).zip(inverse_rows).zip(placement_rows).zip(value_rows);
+        for (k, (((state, inverse), placement), values)) in rows.enumerate() {
             let s = mesh.nodes[k].0;
             let [prescribed, rates, accelerations] = stance.prescribed.at(k);
             let (q, rest) = state.split_at_mut(nq);
@@ -223,22 +231,10 @@ impl Instants {
                 (q[index], qd[index], qdd[index]) = (prescribed[j], rates[j], accelerations[j]);
             }
             (q[d.unactuated], qd[d.unactuated]) = (stance.beta[k], stance.betad[k]);
-            // Only the collocation nodes are differentiated.
-            let (betadd, forces) = if k <= last {
-                let length = inverse_length(nq, nj, nc);
-                let inverse = &mut self.inverse[k * length..][..length];
-                gait.inverse_jacobian(leg, q, qd, accelerations, inverse);
-                (inverse[0], &inverse[1..1 + nj + nc])
-            } else {
-                gait.inverse(leg, q, qd, accelerations, &mut self.further);
-                (self.further[nc + d.unactuated], &self.further[nc + nq..])
-            };
-            qdd[d.unactuated] = betadd;
-            values[..nj + nc].copy_from_slice(forces);
+            gait.inverse_jacobian(leg, q, qd, accelerations, inverse);
+            qdd[d.unactuated] = inverse[0];
             gait.placement(leg, q, placement);
-            values[y.angle(0)..y.angle(0) + nj].copy_from_slice(&q[..nj]);
-            values[y.rate(0)..y.rate(0) + nj].copy_from_slice(&qd[..nj]);
-            values[y.height()] = placement[1];
+            y.write(values, q, qd, &inverse[1..1 + nj + nc], placement[1]);
             values[y.clearance()] = if k == 0 || k == last {
                 let end = usize::from(k == last);
                 gait.swing_velocity(leg, q, qd, &mut self.swing[end]);
@@ -255,15 +251,15 @@ impl Instants {
         }
     }
 
-    /// Gradients of all quantities at the collocation nodes; `stance` must have been differentiated.
+    /// Gradients of all quantities; `stance` must have been differentiated.
     pub fn differentiate(&mut self, d: &Description, mesh: &Mesh, stance: &Stance, parameters: &[f64]) {
         let (nq, nj, nc, np) = (d.orientations(), d.joints(), d.positions(), self.layout.len());
         let (y, layout) = (self.quantities, self.layout);
         let t = parameters[layout.duration()];
-        let last = mesh.collocation() - 1;
+        let last = mesh.nodes.len() - 1;
         let mut gradients = std::mem::take(&mut self.gradients);
         let mut betadd = std::mem::take(&mut self.betadd_p);
-        for k in 0..mesh.collocation() {
+        for k in 0..mesh.nodes.len() {
             self.tabulate(mesh, parameters, k);
             let chain = Chain::new(self, d, stance, k);
             let jacobian = self.jacobian(d, k);
@@ -324,6 +320,73 @@ impl Instants {
         let (nq, nc) = (d.orientations(), d.positions());
         let row = &self.placement(d, node)[2 * nc..][..nq];
         Chain::new(self, d, stance, node).row([row, &[], &[]], None, out);
+    }
+}
+
+/// One instant between the nodes: the same quantities, without derivatives.
+#[derive(Clone, Debug)]
+pub struct Glance {
+    quantities: Quantities,
+    pub state: State,
+    pub qdd: Vec<f64>,
+    /// Of all quantities.
+    pub values: Vec<f64>,
+    inverse: Vec<f64>,
+    placement: Vec<f64>,
+    sharing: Vec<f64>,
+}
+
+impl Glance {
+    /// At half steps on `leg`.
+    pub fn new(d: &Description, leg: usize) -> Glance {
+        let quantities = Quantities::new(d);
+        let (nq, nj, nc) = (d.orientations(), d.joints(), d.positions());
+        let z = |count: usize| vec![0.0; count];
+        Glance {
+            quantities,
+            state: State::new(d, leg),
+            qdd: z(nq),
+            values: z(quantities.len()),
+            inverse: z(nq + nj + 2 * nc),
+            placement: z(placement_length(nq, nc)),
+            sharing: z(sharing_length(nq, quantities.shared)),
+        }
+    }
+
+    /// Looks at `s` of an integrated half step, neither its beginning nor its end.
+    ///
+    /// # Errors
+    /// As for [`Stance::integrate`].
+    pub fn at(
+        &mut self,
+        gait: &dyn Gait,
+        leg: usize,
+        mesh: &Mesh,
+        stance: &Stance,
+        parameters: &[f64],
+        s: f64,
+    ) -> Result<(), Undefined> {
+        let (d, y) = (gait.description(), self.quantities);
+        let (nq, nc) = (d.orientations(), d.positions());
+        stance.at(gait, leg, mesh, parameters, s, &mut self.state)?;
+        let State { q, qd, prescribed: [.., accelerations], .. } = &self.state;
+        gait.inverse(leg, q, qd, accelerations, &mut self.inverse);
+        let (xdd, forces) = self.inverse.split_at(nc + nq);
+        self.qdd.copy_from_slice(&xdd[nc..]);
+        gait.placement(leg, q, &mut self.placement);
+        y.write(&mut self.values, q, qd, forces, self.placement[1]);
+        self.values[y.clearance()] = self.placement[nc + 1] / (4.0 * s * (1.0 - s));
+        if y.shared > 0 {
+            gait.sharing(leg, q, qd, &self.qdd, &mut self.sharing);
+            self.values[y.shared()].copy_from_slice(&self.sharing[..y.shared]);
+        }
+        Ok(())
+    }
+
+    /// Positions of the platform's mass centre and of the swing foot, from the stance foot, m.
+    pub fn places(&self, d: &Description) -> [&[f64]; 2] {
+        let nc = d.positions();
+        [&self.placement[..nc], &self.placement[nc..2 * nc]]
     }
 }
 

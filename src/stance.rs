@@ -25,13 +25,13 @@ pub enum Undefined {
     NotFinite,
 }
 
-/// Discretization of one half step: the collocation nodes, and further instants to look at.
+/// Discretization of one half step.
 #[derive(Clone, Debug)]
 pub struct Mesh {
     pub elements: usize,
     pub lobatto: Lobatto,
     pub basis: Basis,
-    /// s of every node and the basis there: collocation nodes in order, then further instants.
+    /// s of every collocation node and the basis there.
     pub nodes: Vec<(f64, Jet)>,
     /// Quadrature weight of each collocation node on [0, 1].
     pub weights: Vec<f64>,
@@ -57,22 +57,9 @@ impl Mesh {
         Mesh { elements, lobatto, basis, nodes, weights }
     }
 
-    /// Number of collocation nodes.
-    pub fn collocation(&self) -> usize {
-        self.elements * (NODES - 1) + 1
-    }
-
     /// Element that contains `s`.
     pub fn element(&self, s: f64) -> usize {
         ((s * self.elements as f64) as usize).min(self.elements - 1)
-    }
-
-    /// Replaces the further instants.
-    pub fn set_instants(&mut self, instants: &[f64]) {
-        self.nodes.truncate(self.collocation());
-        for &s in instants {
-            self.nodes.push((s, self.basis.jet(s)));
-        }
     }
 }
 
@@ -112,6 +99,21 @@ impl Layout {
     pub fn is_empty(&self) -> bool {
         false
     }
+
+    /// Q, Q̇ and Q̈ (eq. 15) of prescribed coordinate `k`, and the derivatives of each in T.
+    fn coordinate(&self, k: usize, jet: &Jet, parameters: &[f64]) -> ([f64; 3], [f64; 3]) {
+        let t = parameters[self.duration()];
+        let (per_t, last) = (1.0 / t, self.per_joint - 1);
+        let own = &parameters[self.joint(k, 0)..][..self.per_joint];
+        // The values among the parameters, and the two rates, which are given times T.
+        let of = |jet: &[f64]| {
+            let values = jet[2..last].iter().zip(&own[2..last]).fold(jet[0] * own[0], |sum, (b, p)| sum + b * p);
+            (values, jet[1] * own[1] + jet[last] * own[last])
+        };
+        let ((v, rv), (d, rd), (dd, rdd)) = (of(&jet.value), of(&jet.first), of(&jet.second));
+        let by_duration = [rv, -d * per_t * per_t, -(2.0 * dd * per_t + rdd) * per_t * per_t];
+        ([v + t * rv, d * per_t + rd, (dd * per_t + rdd) * per_t], by_duration)
+    }
 }
 
 /// The prescribed coordinates at some instants, a row per instant: Q, Q̇, Q̈ (eq. 15) and the derivatives of each in T.
@@ -133,23 +135,10 @@ impl Prescribed {
 
     /// Evaluates all coordinates at all nodes.
     pub fn evaluate(&mut self, layout: &Layout, mesh: &Mesh, parameters: &[f64]) {
-        let t = parameters[layout.duration()];
-        let (per_t, last) = (1.0 / t, layout.per_joint - 1);
         for (node, (_, jet)) in mesh.nodes.iter().enumerate() {
             for k in 0..layout.prescribed {
-                let own = &parameters[layout.joint(k, 0)..][..layout.per_joint];
-                // The values among the parameters, and the two rates, which are given times T.
-                let of = |jet: &[f64]| {
-                    let values =
-                        jet[2..last].iter().zip(&own[2..last]).fold(jet[0] * own[0], |sum, (b, p)| sum + b * p);
-                    (values, jet[1] * own[1] + jet[last] * own[last])
-                };
-                let ((v, rv), (d, rd), (dd, rdd)) = (of(&jet.value), of(&jet.first), of(&jet.second));
                 let at = node * self.count + k;
-                self.q[at] = v + t * rv;
-                self.qd[at] = d * per_t + rd;
-                self.qdd[at] = (dd * per_t + rdd) * per_t;
-                self.by_duration[at] = [rv, -d * per_t * per_t, -(2.0 * dd * per_t + rdd) * per_t * per_t];
+                ([self.q[at], self.qd[at], self.qdd[at]], self.by_duration[at]) = layout.coordinate(k, jet, parameters);
             }
         }
     }
@@ -190,7 +179,6 @@ pub struct Stance {
     late: Vec<[f64; 6]>,
     early: Vec<f64>,
     gradient: Vec<f64>,
-    /// At all nodes.
     pub prescribed: Prescribed,
     early_length: usize,
     layout: Layout,
@@ -199,11 +187,10 @@ pub struct Stance {
 const NEWTON_STEPS: usize = 25;
 
 impl Stance {
-    /// Workspace for the nodes that `mesh` has now.
     pub fn new(description: &Description, mesh: &Mesh, leg: usize) -> Stance {
         let layout = Layout::new(description, &mesh.basis);
         let n = mesh.nodes.len();
-        let table = || vec![0.0; mesh.collocation() * layout.len()];
+        let table = || vec![0.0; mesh.nodes.len() * layout.len()];
         let early_length = description.early[leg];
         Stance {
             beta: vec![0.0; n],
@@ -241,10 +228,6 @@ impl Stance {
         for e in 0..mesh.elements {
             self.element(gait, leg, mesh, e, t / mesh.elements as f64)?;
         }
-        for k in mesh.collocation()..mesh.nodes.len() {
-            (self.beta[k], self.sigma[k]) = self.state(mesh, mesh.nodes[k].0, t);
-            self.rates(gait, leg, k)?;
-        }
         Ok(())
     }
 
@@ -252,20 +235,24 @@ impl Stance {
     fn rates(&mut self, gait: &dyn Gait, leg: usize, k: usize) -> Result<(), Undefined> {
         let early = &self.early[k * self.early_length..][..self.early_length];
         gait.late(leg, early, self.beta[k], &mut self.late[k]);
-        let [f1, f2, moment, ..] = self.late[k];
+        [self.betad[k], self.sigmad[k]] = self.rates_of(&self.late[k], self.beta[k], self.sigma[k])?;
+        Ok(())
+    }
+
+    /// β̇ and σ̇ (eq. 8, 9), where f1 is not nearly zero beside what it is in the beginning.
+    fn rates_of(&self, [f1, f2, moment, ..]: &[f64; 6], beta: f64, sigma: f64) -> Result<[f64; 2], Undefined> {
         let reference = self.late[0][0];
         if f1.abs() < 1e-3 * reference.abs() || f1.abs() < 1e-6 || f1 * reference < 0.0 {
             return Err(Undefined::NoInertia);
         }
-        self.betad[k] = (self.sigma[k] - f2) / f1;
-        self.sigmad[k] = moment;
-        if !(self.betad[k].is_finite() && moment.is_finite()) {
+        let betad = (sigma - f2) / f1;
+        if !(betad.is_finite() && moment.is_finite()) {
             return Err(Undefined::NotFinite);
         }
-        if self.beta[k].abs() > 20.0 {
+        if beta.abs() > 20.0 {
             return Err(Undefined::Diverged);
         }
-        Ok(())
+        Ok([betad, *moment])
     }
 
     /// ∂β̇/∂β, ∂β̇/∂σ and ∂σ̇/∂β at node `k`.
@@ -354,7 +341,7 @@ impl Stance {
         self.sigma_p[..np].fill(0.0);
         self.beta_p[layout.beta()] = 1.0;
         self.sigma_p[layout.sigma()] = 1.0;
-        for k in 0..mesh.collocation() {
+        for k in 0..mesh.nodes.len() {
             self.explicit(gait, leg, mesh, k, t);
         }
         self.complete(0, t);
@@ -434,22 +421,64 @@ impl Stance {
         }
     }
 
-    /// (β, σ) at any `s`, by the collocation polynomial.
-    pub fn state(&self, mesh: &Mesh, s: f64, t: f64) -> (f64, f64) {
-        let (first, integrals, share) = self.locate(mesh, s);
-        let (mut beta, mut sigma) = (self.beta[first], self.sigma[first]);
-        for (j, w) in integrals.iter().enumerate() {
-            beta += t * share * w * self.betad[first + j];
-            sigma += t * share * w * self.sigmad[first + j];
+    /// The state at any `s` of an integrated half step, by the collocation polynomial.
+    ///
+    /// # Errors
+    /// As for [`Stance::integrate`].
+    pub fn at(
+        &self,
+        gait: &dyn Gait,
+        leg: usize,
+        mesh: &Mesh,
+        parameters: &[f64],
+        s: f64,
+        state: &mut State,
+    ) -> Result<(), Undefined> {
+        let (d, layout) = (gait.description(), self.layout);
+        let jet = mesh.basis.jet(s);
+        for k in 0..layout.prescribed {
+            ([state.prescribed[0][k], state.prescribed[1][k], state.prescribed[2][k]], _) =
+                layout.coordinate(k, &jet, parameters);
+            let index = d.prescribed_index(k);
+            (state.q[index], state.qd[index]) = (state.prescribed[0][k], state.prescribed[1][k]);
         }
-        (beta, sigma)
-    }
-
-    /// Element that contains `s`: its first node, the integrals up to `s`, its share of the interval.
-    fn locate(&self, mesh: &Mesh, s: f64) -> (usize, [f64; NODES], f64) {
         let e = mesh.element(s);
-        let integrals = mesh.lobatto.integrals(s * mesh.elements as f64 - e as f64);
-        (e * (NODES - 1), integrals, 1.0 / mesh.elements as f64)
+        let (first, share) = (e * (NODES - 1), parameters[layout.duration()] / mesh.elements as f64);
+        let (mut beta, mut sigma) = (self.beta[first], self.sigma[first]);
+        for (j, w) in mesh.lobatto.integrals(s * mesh.elements as f64 - e as f64).iter().enumerate() {
+            beta += share * w * self.betad[first + j];
+            sigma += share * w * self.sigmad[first + j];
+        }
+        let mut late = [0.0; 6];
+        gait.early(leg, &state.prescribed[0], &state.prescribed[1], &mut state.early);
+        gait.late(leg, &state.early, beta, &mut late);
+        let [betad, _] = self.rates_of(&late, beta, sigma)?;
+        (state.q[d.unactuated], state.qd[d.unactuated], state.sigma) = (beta, betad, sigma);
+        Ok(())
+    }
+}
+
+/// The state at one instant, and room to find it.
+#[derive(Clone, Debug)]
+pub struct State {
+    pub q: Vec<f64>,
+    pub qd: Vec<f64>,
+    /// Q, Q̇ and Q̈.
+    pub prescribed: [Vec<f64>; 3],
+    pub sigma: f64,
+    early: Vec<f64>,
+}
+
+impl State {
+    pub fn new(d: &Description, leg: usize) -> State {
+        let (q, own) = (vec![0.0; d.orientations()], vec![0.0; d.prescribed()]);
+        State {
+            qd: q.clone(),
+            q,
+            prescribed: [own.clone(), own.clone(), own],
+            sigma: 0.0,
+            early: vec![0.0; d.early[leg]],
+        }
     }
 }
 

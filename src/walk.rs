@@ -3,8 +3,8 @@
 //! Everything comes from `Cycle`, which the optimizer uses too. What is added here is where things are: the
 //! second half step of a mirrored gait, the footprints, and the real legs that a virtual leg stands for.
 
-use crate::cycle::Cycle;
-use crate::instant::Quantities;
+use crate::cycle::{Cycle, Sample};
+use crate::instant::{Glance, Quantities};
 use crate::model::{Body, Description, Gait, HalfSteps, Rotation};
 use crate::motion::{Criterion, Motion};
 use crate::stance::Undefined;
@@ -89,6 +89,7 @@ impl<'a> Walk<'a> {
         // Neither criterion nor speed has a part in where the robot is.
         let mut cycle = Cycle::new(gait, Criterion::Torque, 1.0);
         let theta = cycle.theta(motion);
+        cycle.simulate(&theta)?;
         let mut moments = Vec::new();
         let mut stance_foot = [0.0; 3];
         let mut start = 0.0;
@@ -103,29 +104,23 @@ impl<'a> Walk<'a> {
         for (h, support) in half_steps.iter().enumerate() {
             let phase = h % d.phases();
             let role = Role { gait, leg: support.leg, mirrored: h != phase && d.half_steps == HalfSteps::Mirrored };
-            let shares = shares(support);
-            let (first, last) = (0, cycle.last_node(phase));
-            let inner: Vec<f64> = shares.iter().copied().filter(|s| *s > 0.0 && *s < 1.0).collect();
-            let mut instants = vec![Vec::new(); d.phases()];
-            instants[phase].clone_from(&inner);
-            cycle.set_instants(&instants);
-            cycle.simulate(&theta)?;
+            let last = cycle.last_node(phase);
             let landing = role.point(cycle.sample(phase, last).swing);
             if h == 0 {
                 // The line of travel is midway between the footprints.
                 stance_foot[2] = -0.5 * landing[2];
             }
-            let mut next = last + 1;
-            for &share in &shares {
-                let node = match share {
-                    s if s <= 0.0 => first,
-                    s if s >= 1.0 => last,
-                    _ => {
-                        next += 1;
-                        next - 1
+            let mut glance = Glance::new(d, cycle.stance_leg(phase));
+            for share in shares(support) {
+                let sample = match share {
+                    s if s <= 0.0 => cycle.sample(phase, 0),
+                    s if s >= 1.0 => cycle.sample(phase, last),
+                    s => {
+                        cycle.glance(phase, s, &mut glance)?;
+                        Sample::of(&glance, d, s)
                     }
                 };
-                let mut moment = role.moment(&cycle, phase, node, stance_foot);
+                let mut moment = role.moment(&sample, stance_foot);
                 (moment.half_step, moment.time) = (h, support.start + share * support.duration);
                 moments.push(moment);
             }
@@ -165,11 +160,10 @@ impl Role<'_> {
         (0..values.len()).map(take).collect()
     }
 
-    fn moment(&self, cycle: &Cycle, phase: usize, node: usize, stance_foot: Point) -> Moment {
+    fn moment(&self, sample: &Sample, stance_foot: Point) -> Moment {
         let d = self.gait.description();
         let y = Quantities::new(d);
         let (nc, nj, nq) = (d.positions(), d.joints(), d.orientations());
-        let sample = cycle.sample(phase, node);
         let at = |p: Point| [0, 1, 2].map(|k| p[k] + stance_foot[k]);
         let [q, qd, qdd] = sample.state.map(|v| self.renamed(v));
         let prescribed: Vec<f64> = (0..d.prescribed()).map(|k| qdd[d.prescribed_index(k)]).collect();

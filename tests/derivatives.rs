@@ -12,7 +12,7 @@ use piaffe::sqp::{Problem, Values};
 fn impose_everywhere(cycle: &mut Cycle, theta: &[f64], values: &mut Values) {
     let elements = elements(cycle.description());
     for phase in 0..cycle.phases() {
-        for constraint in 0..cycle.path_count() {
+        for constraint in 0..cycle.path().len() {
             for element in 0..elements {
                 cycle.impose(phase, constraint, (element as f64 + 0.5) / elements as f64, 0.01);
             }

@@ -79,9 +79,9 @@ impl Workspace {
                 weights: z(phase.linearized.len()),
                 gradient: z(np),
                 travel: 0.0,
-                omega: Vec::with_capacity(phase.mesh.collocation()),
-                stationarity: Vec::with_capacity(phase.mesh.collocation()),
-                direct: Vec::with_capacity(phase.mesh.collocation()),
+                omega: Vec::with_capacity(phase.mesh.nodes.len()),
+                stationarity: Vec::with_capacity(phase.mesh.nodes.len()),
+                direct: Vec::with_capacity(phase.mesh.nodes.len()),
                 out: z(3 * nq + 4 * nq * nq),
                 shared: z(3 * nq + 4 * nq * nq),
                 n: z(d.joints() + 1),
@@ -136,7 +136,7 @@ impl Cycle<'_> {
         let d = self.description();
         let p = &self.phases[k];
         let count = p.instants.quantities.len();
-        let nodes = p.mesh.collocation();
+        let nodes = p.mesh.nodes.len();
         let t = p.duration();
         work.weights.clear();
         work.weights.resize(nodes * count, 0.0);
@@ -191,7 +191,7 @@ impl Cycle<'_> {
         let p = &self.phases[k];
         let t = p.duration();
         let h = &mut work.h_local;
-        for node in 0..p.mesh.collocation() {
+        for node in 0..p.mesh.nodes.len() {
             work.phase.node(self.gait, d, p, node, h);
         }
         // Products of quantities: squares of torques, torque times rate, cones.
@@ -404,7 +404,7 @@ impl Cycle<'_> {
 impl PhaseWork {
     /// Multipliers of the collocation equations, from the last element to the first.
     fn adjoint(&mut self, d: &Description, p: &Phase, lambda: &[f64], k: usize) {
-        let nodes = p.mesh.collocation();
+        let nodes = p.mesh.nodes.len();
         self.omega.clear();
         self.omega.resize(nodes, [0.0; 2]);
         self.stationarity.clear();

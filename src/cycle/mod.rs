@@ -17,6 +17,7 @@ mod sample;
 
 use crate::constraints::{ImpactConstraints, PathConstraint, path_constraints};
 use crate::cost::{Integral, integrate};
+use crate::instant::Glance;
 use crate::model::{Description, Gait, HalfSteps};
 use crate::motion::{Costs, Criterion, HalfStep, Motion};
 use crate::stance::Undefined;
@@ -173,35 +174,37 @@ impl<'a> Cycle<'a> {
         self.gait
     }
 
-    /// The same problem, with collocation nodes only.
-    pub fn again(&self) -> Cycle<'a> {
-        Cycle::with_elements(self.gait, self.criterion, self.speed, self.phases[0].mesh.elements)
-    }
-
     /// Number of half steps that define the gait.
     pub fn phases(&self) -> usize {
         self.phases.len()
     }
 
-    /// Number of instants looked at in a half step.
+    /// Number of collocation nodes of a half step.
     pub fn nodes(&self, phase: usize) -> usize {
         self.phases[phase].mesh.nodes.len()
     }
 
-    /// Instant `node` as a share of its half step.
+    /// Node `node` as a share of its half step.
     pub fn instant(&self, phase: usize, node: usize) -> f64 {
         self.phases[phase].mesh.nodes[node].0
     }
 
-    /// Number of path constraints.
-    pub fn path_count(&self) -> usize {
-        self.path.len()
+    /// All path constraints of an instant.
+    pub fn path(&self) -> &[PathConstraint] {
+        &self.path
     }
 
-    /// Scaled values of all path constraints at a node, in the last simulated motion.
-    pub fn path_values(&self, phase: usize, node: usize) -> impl Iterator<Item = f64> + '_ {
-        let y = self.phases[phase].instants.row(node);
-        self.path.iter().map(move |constraint| constraint.value(y))
+    /// The quantities of a node in the last simulated motion.
+    pub fn quantities(&self, phase: usize, node: usize) -> &[f64] {
+        self.phases[phase].instants.row(node)
+    }
+
+    /// Looks at share `s` of a half step, between its nodes, in the last simulated motion.
+    ///
+    /// # Errors
+    /// If the equations admit no such state.
+    pub fn glance(&self, phase: usize, s: f64, glance: &mut Glance) -> Result<(), Undefined> {
+        self.phases[phase].glance(self.gait, s, glance)
     }
 
     /// Number of variables Θ.
@@ -220,14 +223,6 @@ impl<'a> Cycle<'a> {
             scale.push(0.1);
         }
         scale
-    }
-
-    /// Looks at further instants (shares of each half step) besides the collocation nodes: nothing is imposed there.
-    pub fn set_instants(&mut self, instants: &[Vec<f64>]) {
-        let d = self.description();
-        for (phase, list) in self.phases.iter_mut().zip(instants) {
-            phase.set_instants(d, list);
-        }
     }
 
     /// Imposes a path constraint at its lowest point near `s`, in the element there, where it is known to have this value

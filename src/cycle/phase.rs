@@ -4,10 +4,10 @@ use super::Variables;
 use super::dip::{Dip, Lowest};
 use crate::constraints::PathConstraint;
 use crate::cost::Integral;
-use crate::instant::Instants;
+use crate::instant::{Glance, Instants};
 use crate::lgl::NODES;
 use crate::model::{Description, Gait};
-use crate::stance::{Layout, Mesh, Stance};
+use crate::stance::{Layout, Mesh, Stance, Undefined};
 
 /// Length of a touchdown's couple and pitch, which come after everything else.
 const SHARED: usize = 3;
@@ -88,21 +88,18 @@ impl Phase {
         }
     }
 
-    /// Looks at these further instants besides the collocation nodes.
-    pub fn set_instants(&mut self, d: &Description, instants: &[f64]) {
-        self.mesh.set_instants(instants);
-        self.stance = Stance::new(d, &self.mesh, self.leg);
-        self.instants = Instants::new(d, &self.mesh);
-        self.linearized = self.instants.values.clone();
-    }
-
     pub fn duration(&self) -> f64 {
         self.parameters[self.layout.duration()]
     }
 
-    /// Last collocation node.
+    /// Last node.
     pub fn last(&self) -> usize {
-        self.mesh.collocation() - 1
+        self.mesh.nodes.len() - 1
+    }
+
+    /// Looks at share `s`, between the nodes, of the last simulated motion.
+    pub fn glance(&self, gait: &dyn Gait, s: f64, glance: &mut Glance) -> Result<(), Undefined> {
+        glance.at(gait, self.leg, &self.mesh, &self.stance, &self.parameters, s)
     }
 
     /// Where a path constraint is lowest in an element of the last simulated motion, as the quartic has it, near `from`.

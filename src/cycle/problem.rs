@@ -62,7 +62,7 @@ impl Cycle<'_> {
     pub(super) fn weighted_path_rows(&self, mu: &[f64], mut visit: impl FnMut(usize, usize, &PathConstraint, f64)) {
         let mut i = 0;
         for (k, phase) in self.phases.iter().enumerate() {
-            for node in 0..phase.mesh.collocation() {
+            for node in 0..phase.mesh.nodes.len() {
                 for constraint in self.path_at(node) {
                     if mu[i] != 0.0 {
                         visit(k, node, constraint, mu[i]);
@@ -76,7 +76,7 @@ impl Cycle<'_> {
     /// Index of the first row of a dip.
     pub(super) fn first_dip_row(&self) -> usize {
         let at_start = self.at_start().count();
-        self.phases.iter().map(|p| at_start + (p.mesh.collocation() - 1) * self.path.len()).sum()
+        self.phases.iter().map(|p| at_start + (p.mesh.nodes.len() - 1) * self.path.len()).sum()
     }
 
     /// Index of the first impact row.
@@ -102,7 +102,7 @@ impl Cycle<'_> {
                 return Row::Path { phase, node: 0, constraint: self.at_start().nth(rest).unwrap_or(0) };
             }
             rest -= at_start;
-            let others = (p.mesh.collocation() - 1) * self.path.len();
+            let others = (p.mesh.nodes.len() - 1) * self.path.len();
             if rest < others {
                 return Row::Path { phase, node: 1 + rest / self.path.len(), constraint: rest % self.path.len() };
             }
@@ -328,7 +328,7 @@ impl Problem for Cycle<'_> {
         }
         let mut slots = out.inequalities.iter_mut();
         for p in &self.phases {
-            for node in 0..p.mesh.collocation() {
+            for node in 0..p.mesh.nodes.len() {
                 let y = p.instants.row(node);
                 for (constraint, slot) in self.path_at(node).zip(&mut slots) {
                     *slot = constraint.value(y);
@@ -412,7 +412,7 @@ impl Problem for Cycle<'_> {
             // The direction in local parameters, then in the quantities of each instant.
             local.clear();
             local.extend(p.by_theta.chunks(n).map(|row| dot(row, direction)));
-            for node in 0..p.mesh.collocation() {
+            for node in 0..p.mesh.nodes.len() {
                 change.clear();
                 change.extend(p.instants.gradients(node).chunks(local.len()).map(|g| dot(g, &local)));
                 let y = p.linearized(node);

@@ -1,6 +1,8 @@
 //! What the last simulated motion is at its instants: for whoever shows it.
 
 use super::Cycle;
+use crate::instant::Glance;
+use crate::model::Description;
 
 /// One instant of a half step. Positions are from the stance foot, world axes, m.
 pub struct Sample<'a> {
@@ -16,8 +18,17 @@ pub struct Sample<'a> {
     pub swing: &'a [f64],
 }
 
+impl<'a> Sample<'a> {
+    /// What was seen at a share of a half step.
+    pub fn of(glance: &'a Glance, d: &Description, share: f64) -> Sample<'a> {
+        let [platform, swing] = glance.places(d);
+        let state = [&glance.state.q[..], &glance.state.qd, &glance.qdd];
+        Sample { share, state, quantities: &glance.values, platform, swing }
+    }
+}
+
 impl Cycle<'_> {
-    /// Instant `node` of a half step.
+    /// Node `node` of a half step.
     pub fn sample(&self, phase: usize, node: usize) -> Sample<'_> {
         let (p, d) = (&self.phases[phase], self.description());
         let nc = d.positions();
@@ -41,7 +52,7 @@ impl Cycle<'_> {
         self.phases[phase].leg
     }
 
-    /// The instant at which a half step ends: the last of the collocation nodes.
+    /// The node at which a half step ends.
     pub fn last_node(&self, phase: usize) -> usize {
         self.phases[phase].last()
     }

@@ -7,7 +7,7 @@
 use crate::cycle::{Cycle, Label, Place};
 use crate::model::Gait;
 use crate::motion::{Criterion, Motion};
-use crate::search::refine::Probe;
+use crate::search::refine::dips;
 use crate::sqp::{Multipliers, Undefined, multipliers};
 use serde::{Deserialize, Serialize};
 
@@ -122,8 +122,7 @@ impl<'a> Linearized<'a> {
     ) -> Result<Linearized<'a>, Undefined> {
         let mut cycle = Cycle::new(gait, criterion, speed);
         let theta = cycle.theta(motion);
-        let found = Probe::new(&cycle).dips(&theta).map_err(|_| Undefined)?;
-        cycle.simulate(&theta).map_err(|_| Undefined)?;
+        let found = cycle.simulate(&theta).and_then(|()| dips(&cycle)).map_err(|_| Undefined)?;
         found.impose(&mut cycle);
         let scale = cycle.scale();
         let multipliers = multipliers(&mut cycle, &theta, scale)?;

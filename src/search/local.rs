@@ -1,7 +1,7 @@
 //! One local optimum: from a start to a motion that satisfies every constraint between nodes too.
 
 use super::nearest::nearest;
-use super::refine::Probe;
+use super::refine::dips;
 use crate::cycle::{Cycle, Label, elements};
 use crate::model::Gait;
 use crate::motion::{Costs, Criterion, Motion};
@@ -116,15 +116,14 @@ impl Task<'_> {
     /// The optimum near `start`, with constraints imposed between nodes where they dip.
     fn polish(&self, start: &[f64], observe: Observer) -> Local {
         let mut cycle = self.cycle();
-        let mut probe = Probe::new(&cycle);
         let options = options(&cycle);
         let mut solution = sqp::minimize(&mut cycle, start, &options, observe);
         let mut iterations = solution.iterations;
         let mut violation = f64::INFINITY;
         for _ in 0..ROUNDS {
-            let Ok(found) = probe.dips(&solution.x) else { break };
+            let Ok(found) = cycle.simulate(&solution.x).and_then(|()| dips(&cycle)) else { break };
             violation = found.violation;
-            if !solution.status.is_optimal() || violation <= DENSE || cycle.simulate(&solution.x).is_err() {
+            if !solution.status.is_optimal() || violation <= DENSE {
                 break;
             }
             found.impose(&mut cycle);

@@ -6,6 +6,7 @@
 //! there. The row follows its dip, so two or three rounds suffice and no margin is needed.
 
 use crate::cycle::Cycle;
+use crate::instant::Glance;
 use crate::stance::Undefined;
 
 /// Points of the grid per half step.
@@ -31,7 +32,7 @@ struct Dip {
 }
 
 impl Dips {
-    /// Imposes the constraints where they dip. `cycle` must have simulated the same motion.
+    /// Imposes the constraints where they dip in the same motion.
     pub fn impose(&self, cycle: &mut Cycle) {
         for dip in &self.found {
             cycle.impose(dip.phase, dip.constraint, dip.s, dip.value);
@@ -39,74 +40,65 @@ impl Dips {
     }
 }
 
-/// A copy of the problem that looks at a fine grid.
-pub struct Probe<'a> {
-    cycle: Cycle<'a>,
-    /// Per half step its instants in order of time, as shares of it, and the nodes that they are.
-    instants: Vec<Vec<(f64, usize)>>,
-    /// Of one half step: a list of values at its instants for every constraint.
-    values: Vec<f64>,
-}
-
-impl<'a> Probe<'a> {
-    pub fn new(cycle: &Cycle<'a>) -> Probe<'a> {
-        let mut cycle = cycle.again();
-        let grid: Vec<f64> = (1..GRID).map(|k| k as f64 / GRID as f64).collect();
-        cycle.set_instants(&vec![grid; cycle.phases()]);
-        let instants = (0..cycle.phases()).map(|phase| {
-            let mut list: Vec<_> = (0..cycle.nodes(phase)).map(|node| (cycle.instant(phase, node), node)).collect();
-            list.sort_by(|a, b| a.0.total_cmp(&b.0));
-            // Collocation nodes and grid points can coincide.
-            list.dedup_by(|a, b| a.0 == b.0);
-            list
-        });
-        Probe { instants: instants.collect(), values: Vec::new(), cycle }
-    }
-
-    /// Finds where constraints dip in the motion of `theta`.
-    ///
-    /// # Errors
-    /// If the motion does not exist.
-    pub fn dips(&mut self, theta: &[f64]) -> Result<Dips, Undefined> {
-        let Probe { cycle, instants, values } = self;
-        cycle.simulate(theta)?;
-        let mut result = Dips::default();
-        for (phase, instants) in instants.iter().enumerate() {
-            let count = instants.len();
-            values.resize(count * cycle.path_count(), 0.0);
-            for (k, (_, node)) in instants.iter().enumerate() {
-                for (constraint, value) in cycle.path_values(phase, *node).enumerate() {
-                    values[constraint * count + k] = value;
+/// Finds where constraints dip in the last simulated motion of `cycle`.
+///
+/// # Errors
+/// If the equations admit no state at some instant.
+pub fn dips(cycle: &Cycle) -> Result<Dips, Undefined> {
+    let mut result = Dips::default();
+    // Of all constraints at three successive instants.
+    let mut values = [0, 1, 2].map(|_| vec![0.0; cycle.path().len()]);
+    for phase in 0..cycle.phases() {
+        let mut glance = Glance::new(cycle.description(), cycle.stance_leg(phase));
+        let instants = instants(cycle, phase);
+        for (k, (s, node)) in instants.iter().enumerate() {
+            let y = match node {
+                Some(node) => cycle.quantities(phase, *node),
+                None => {
+                    cycle.glance(phase, *s, &mut glance)?;
+                    &glance.values
                 }
+            };
+            values.rotate_left(1);
+            for (value, constraint) in values[2].iter_mut().zip(cycle.path()) {
+                *value = constraint.value(y);
             }
-            for (constraint, values) in values.chunks(count).enumerate() {
-                let lowest = values[1..count - 1].iter().fold(f64::INFINITY, |least, value| least.min(*value));
-                result.violation = result.violation.max(-lowest);
-                if lowest >= NEAR {
-                    continue;
-                }
-                for k in 1..count - 1 {
-                    // A dip inside the first or last interval shows in the parabola only.
-                    let lowest = values[k] <= values[k - 1] && values[k] < values[k + 1];
-                    if values[k] < NEAR && (lowest || k == 1 || k == count - 2) {
-                        let s = [k - 1, k, k + 1].map(|k| instants[k].0);
-                        let (at, value) = vertex(&s, &values[k - 1..=k + 1]);
-                        if at > s[0] && at < s[2] {
-                            result.violation = result.violation.max(-value);
-                            result.found.push(Dip { phase, constraint, s: at, value });
-                        }
+            if k < 2 {
+                continue;
+            }
+            for constraint in 0..cycle.path().len() {
+                let v = [0, 1, 2].map(|i| values[i][constraint]);
+                result.violation = result.violation.max(-v[1]);
+                // A dip inside the first or last interval shows in the parabola only.
+                let lowest = v[1] <= v[0] && v[1] < v[2] || k == 2 || k + 1 == instants.len();
+                if v[1] < NEAR && lowest {
+                    let s = [k - 2, k - 1, k].map(|i| instants[i].0);
+                    let (at, value) = vertex(&s, &v);
+                    if at > s[0] && at < s[2] {
+                        result.violation = result.violation.max(-value);
+                        result.found.push(Dip { phase, constraint, s: at, value });
                     }
                 }
             }
         }
-        // Of two dips that turn out to be one, the lower has the last word.
-        result.found.sort_by(|a, b| b.value.total_cmp(&a.value));
-        Ok(result)
     }
+    // Of two dips that turn out to be one, the lower has the last word.
+    result.found.sort_by(|a, b| b.value.total_cmp(&a.value));
+    Ok(result)
+}
+
+/// The instants of a half step in order, as shares of it, and the nodes that they are.
+fn instants(cycle: &Cycle, phase: usize) -> Vec<(f64, Option<usize>)> {
+    let nodes = (0..cycle.nodes(phase)).map(|node| (cycle.instant(phase, node), Some(node)));
+    let mut list: Vec<_> = nodes.chain((1..GRID).map(|k| (k as f64 / GRID as f64, None))).collect();
+    list.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // Where a grid point is a node, the node stays.
+    list.dedup_by(|a, b| a.0 == b.0);
+    list
 }
 
 /// Lowest point of the parabola through three points.
-fn vertex(s: &[f64; 3], v: &[f64]) -> (f64, f64) {
+fn vertex(s: &[f64; 3], v: &[f64; 3]) -> (f64, f64) {
     let (a, b) = ((v[1] - v[0]) / (s[1] - s[0]), (v[2] - v[1]) / (s[2] - s[1]));
     let curvature = (b - a) / (s[2] - s[0]);
     if curvature <= 0.0 {

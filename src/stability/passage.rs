@@ -3,9 +3,9 @@
 use crate::cycle::{elements, renamed};
 use crate::model::Gait;
 use crate::motion::{HalfStep, Motion};
-use crate::stance::{Layout, Mesh, Stance, Undefined};
+use crate::stance::{self, Layout, Mesh, Stance, Undefined};
 
-/// Further instants per half step at which the motion is looked at.
+/// Intervals per half step at whose ends the motion is looked at.
 const INSTANTS: usize = 500;
 
 /// One half step, from just after a landing to just after the next one.
@@ -70,43 +70,30 @@ impl Passage {
         let d = gait.description();
         let next = (k + 1) % motion.half_steps.len();
         let half_step = &motion.half_steps[k];
-        let mut mesh = Mesh::new(elements(d), d.polynomial_order);
-        let between: Vec<f64> = (1..INSTANTS).map(|i| i as f64 / INSTANTS as f64).collect();
-        mesh.set_instants(&between);
+        let mesh = Mesh::new(elements(d), d.polynomial_order);
         let layout = Layout::new(d, &mesh.basis);
         let parameters = parameters(gait, half_step, k, &layout);
         let mut stance = Stance::new(d, &mesh, k);
         stance.integrate(gait, k, &mesh, &parameters)?;
         stance.differentiate(gait, k, &mesh, &parameters);
-        let last = mesh.collocation() - 1;
+        let last = mesh.nodes.len() - 1;
         let row = |of: &[f64]| [layout.beta(), layout.sigma()].map(|p| of[last * layout.len() + p]);
 
-        let state = |node: usize| {
-            let [q, qd, qdd] = stance.prescribed.at(node);
-            let mut at = State { q: vec![0.0; d.orientations()], ..State::default() };
-            (at.qd, at.qdd) = (at.q.clone(), at.q.clone());
-            for j in 0..layout.prescribed {
-                let index = d.prescribed_index(j);
-                (at.q[index], at.qd[index], at.qdd[index]) = (q[j], qd[j], qdd[j]);
-            }
-            (at.q[d.unactuated], at.qd[d.unactuated]) = (stance.beta[node], stance.betad[node]);
-            at.qdd[d.unactuated] = beta_acceleration(gait, k, &at, qdd);
-            at
+        let mut at = stance::State::new(d, k);
+        let mut instant = |share: f64| {
+            stance.at(gait, k, &mesh, &parameters, share, &mut at)?;
+            let state = State { q: at.q.clone(), qd: at.qd.clone(), qdd: acceleration(gait, k, &at) };
+            Ok(Instant { time: share * half_step.duration, state, sigma: at.sigma })
         };
-        let mut instants: Vec<Instant> = (0..mesh.nodes.len())
-            .map(|node| Instant {
-                time: mesh.nodes[node].0 * half_step.duration,
-                state: state(node),
-                sigma: stance.sigma[node],
-            })
-            .collect();
-        instants.sort_by(|a, b| a.time.total_cmp(&b.time));
+        let instants: Result<Vec<Instant>, Undefined> =
+            (0..=INSTANTS).map(|i| instant(i as f64 / INSTANTS as f64)).collect();
+        let instants = instants?;
         let (by_beta, by_sigma, _) = stance.partials(last);
         Ok(Passage {
             leg: k,
             duration: half_step.duration,
             flow: [row(&stance.beta_p), row(&stance.sigma_p)],
-            landing: Landing::new(gait, k, state(last), [by_beta, by_sigma]),
+            landing: Landing::new(gait, k, instant(1.0)?.state, [by_beta, by_sigma]),
             instants,
             next: Start::new(gait, &motion.half_steps[next], next),
         })
@@ -189,12 +176,13 @@ pub fn with_next_names(gait: &dyn Gait, values: &[f64]) -> Vec<f64> {
     (0..values.len()).map(name).collect()
 }
 
-/// β̈ by eq. 10.
-fn beta_acceleration(gait: &dyn Gait, leg: usize, at: &State, prescribed: &[f64]) -> f64 {
+/// q̈, with β̈ by eq. 10.
+fn acceleration(gait: &dyn Gait, leg: usize, at: &stance::State) -> Vec<f64> {
     let d = gait.description();
-    let mut inverse = vec![0.0; 2 * d.positions() + d.orientations() + d.joints()];
-    gait.inverse(leg, &at.q, &at.qd, prescribed, &mut inverse);
-    inverse[d.positions() + d.unactuated]
+    let (nc, nq) = (d.positions(), d.orientations());
+    let mut inverse = vec![0.0; 2 * nc + nq + d.joints()];
+    gait.inverse(leg, &at.q, &at.qd, &at.prescribed[2], &mut inverse);
+    inverse[nc..nc + nq].to_vec()
 }
 
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -112,6 +112,11 @@ impl Tally {
 
     /// Notes the margin of a constraint at a time; a margin that is not a number counts as violated.
     pub fn note(&mut self, constraint: Constraint, margin: f64, time: f64) {
+        self.note_all(constraint, &[margin], &[time]);
+    }
+
+    /// The same at several times.
+    pub fn note_all(&mut self, constraint: Constraint, margins: &[f64], times: &[f64]) {
         let joints = 4 * self.joints;
         let slot = match constraint {
             Constraint::Torque(j) => 4 * j,
@@ -130,9 +135,12 @@ impl Tally {
             Constraint::MeanSpeed => joints + 9,
             Constraint::PlatformHeight => joints + 10,
         };
-        let margin = if margin.is_nan() { f64::MIN } else { margin };
-        if let Some(entry) = self.entries.get_mut(slot).filter(|entry| margin < entry.1) {
-            (entry.1, entry.2) = (margin, time);
+        let Some((_, least, at)) = self.entries.get_mut(slot) else { return };
+        for (margin, time) in margins.iter().zip(times) {
+            let margin = if margin.is_nan() { f64::MIN } else { *margin };
+            if margin < *least {
+                (*least, *at) = (margin, *time);
+            }
         }
     }
 

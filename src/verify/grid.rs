@@ -68,8 +68,7 @@ pub fn evaluate(
             }
         }
         units.margins(instants.numbers(), &state, |constraint, margin| {
-            let lane = least(&margin.0[..count]);
-            tally.note(constraint, margin.0[lane], t[lane]);
+            tally.note_all(constraint, &margin.0[..count], &t);
         });
         let clearance = clearance(instants.numbers(), &state, Lanes(s));
         let [rise, fall] =
@@ -98,12 +97,6 @@ pub fn evaluate(
 /// could grow, which goes over into the margin of the slope.
 fn room(above: f64, per_height: f64) -> f64 {
     if above > 0.0 { above / per_height } else { above }
-}
-
-/// Where the least of some numbers is; one that is none counts as the least.
-fn least(values: &[f64]) -> usize {
-    let lower = |k: usize, j: usize| if values[j] < values[k] || values[j].is_nan() { j } else { k };
-    (1..values.len()).fold(0, lower)
 }
 
 fn transpose<const N: usize>(pairs: [[f64; 2]; N]) -> [[f64; N]; 2] {
