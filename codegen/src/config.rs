@@ -4,6 +4,7 @@ use crate::emit;
 use crate::mechanism::{Family, Mechanism, Whole, levers, select};
 use crate::spec::{self, Diagnostic, Gait, Robot};
 use crate::typeset::latex;
+use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
@@ -182,12 +183,12 @@ pub fn generate(robots: &[RobotFiles], runtime: Option<&str>) -> Result<Vec<Gene
             &latex,
             runtime,
             origin,
-        )?;
+        );
         Ok((emit::file_name(module, &gait.name), source))
     };
     let whole_file = |robot: &Parsed, number: usize, angles: &Angles| {
         let whole = Whole::new(&locked(&robot.spec, angles)?);
-        let source = emit::whole_source(&whole, runtime, &origin(&[&robot.files.robot]))?;
+        let source = emit::whole_source(&whole, runtime, &origin(&[&robot.files.robot]));
         Ok((emit::whole_file_name(&robot.files.module, number), source))
     };
     let mut jobs = for_each_gait(&parsed, &gait_file);
@@ -219,7 +220,7 @@ pub fn generate_families(
     let file = |robot: &Parsed, gait: &Gait, origin: &str| {
         let family = Family::new(&robot.spec, gait, select(robot)?)?;
         let latex = latex(&robot.spec, gait, &family.mechanism);
-        let source = emit::family_source(&family, &robot.files.module, &latex, runtime, origin)?;
+        let source = emit::family_source(&family, &robot.files.module, &latex, runtime, origin);
         Ok((emit::family_file_name(&robot.files.module, &gait.name), source))
     };
     let mut files = together(for_each_gait(&parsed, &file))?;
@@ -293,13 +294,10 @@ fn for_each_gait<'j>(
     gaits.map(|(robot, gait, origin)| Box::new(move || file(robot, gait, origin)) as Job).collect()
 }
 
-/// One thread for each file, joined in order.
+/// The files, in order; the first mistake if there is any.
 fn together(jobs: Vec<Job>) -> Result<Vec<Generated>, String> {
-    std::thread::scope(|scope| {
-        let running: Vec<_> = jobs.into_iter().map(|job| scope.spawn(job)).collect();
-        let stopped = |_| Err("the generator stopped: a defect of piaffe-codegen".to_string());
-        running.into_iter().map(|thread| thread.join().unwrap_or_else(stopped)).collect()
-    })
+    let made: Vec<_> = jobs.into_par_iter().map(|job| job()).collect();
+    made.into_iter().collect()
 }
 
 /// Names of the robots' modules and of their gaits.

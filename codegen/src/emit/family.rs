@@ -1,64 +1,61 @@
 //! One generated module per gait of a family of robots, and the registry of all.
 
-use super::description::{description, float};
-use super::function::{Function, ident};
-use super::gait::{items, methods, path, written};
+use super::description::description;
+use super::function::{Function, functions};
+use super::gait::{constant, getter, header, items, methods};
+use super::layout::Layout;
 use super::modules::{file_name, key, paths, tree};
 use super::type_name;
 use crate::dynamics::family_kernels;
 use crate::mechanism::{Family, Parameter, Sign};
-use proc_macro2::Literal;
-use quote::quote;
 
 /// Source of the module of one gait of a family. `runtime` is the path of the module with the `Gait` trait.
-///
-/// # Errors
-/// If what was generated is not Rust: a defect of the generator.
-pub fn family_source(family: &Family, robot: &str, latex: &str, runtime: &str, origin: &str) -> Result<String, String> {
+pub fn family_source(family: &Family, robot: &str, latex: &str, runtime: &str, origin: &str) -> String {
     let (model, kernels) = family_kernels(family);
-    let gait: Vec<Function> = kernels.gait.iter().map(|k| Function::new(&model.ring, k)).collect();
-    let sensitivity: Vec<Function> = kernels.sensitivity.iter().map(|k| Function::new(&model.ring, k)).collect();
+    let (gait, sensitivity) = (functions(&model.ring, &kernels.gait), functions(&model.ring, &kernels.sensitivity));
     let [numbers, lumps, jacobian] = kernels.parameters.each_ref().map(|k| Function::new(&model.ring, k));
-    let count = |f: &Function| Literal::usize_unsuffixed(f.kernel.outputs[0].values.len());
-    let (lump_count, parameter_count) = (count(&lumps), Literal::usize_unsuffixed(family.parameters.len()));
-    let items =
-        [items(&gait), items(&sensitivity), numbers.source, lumps.source.clone(), jacobian.source.clone()].concat();
-    let runtime = path(runtime)?;
-    let mechanism = &family.mechanism;
-    let name = ident(&type_name(&mechanism.gait));
-    let doc = format!(" The {} of a member of the family of `{}`.", mechanism.gait, mechanism.robot);
-    let description = description(mechanism, &key(robot, &mechanism.gait), &gait, &runtime);
-    let of_gait = methods(&gait);
-    let of_member = methods(&[sensitivity, vec![jacobian]].concat());
-    let member = quote! {
-        #[doc = #doc]
-        #[derive(Clone, Debug)]
-        pub struct #name {
-            description: #runtime::Description,
-            parameters: [f64; #parameter_count],
-            lumps: [f64; #lump_count],
-        }
-        #[doc = " What the gait of the specification's robot is made of, in numbers."]
-        pub static DESCRIPTION: #runtime::Description = #description;
-        #[doc = " What distinguishes the robots of the family."]
-        pub static PARAMETERS: &[#runtime::family::Parameter; #parameter_count] = &super::PARAMETERS;
-        impl #runtime::Gait for #name {
-            fn description(&self) -> &#runtime::Description { &self.description }
-            fn latex(&self) -> &'static str { #latex }
-            #of_gait
-        }
-        impl #runtime::family::Parametric for #name {
-            fn with(parameters: &[f64]) -> Result<Self, #runtime::family::Unfit> {
-                let (description, parameters) =
-                    #runtime::family::fit(&DESCRIPTION, PARAMETERS, parameters, numbers)?;
-                Ok(#name { description, lumps: lumps(&parameters), parameters })
-            }
-            fn parameters(&self) -> &[f64] { &self.parameters }
-            fn lumps(&self) -> &[f64] { &self.lumps }
-            #of_member
-        }
-    };
-    written(&items, member, origin)
+    let m = &family.mechanism;
+    let name = type_name(&m.gait);
+    let (lump_count, parameter_count) = (lumps.kernel.outputs[0].values.len(), family.parameters.len());
+    let mut out = header(origin);
+    out += &items(&gait);
+    out += &items(&sensitivity);
+    [&numbers, &lumps, &jacobian].into_iter().for_each(|f| out += &f.source);
+    out += &format!(
+        "/// The {} of a member of the family of `{}`.\n#[derive(Clone, Debug)]\npub struct {name} {{\n\
+         \x20   description: {runtime}::Description,\n\
+         \x20   parameters: [f64; {parameter_count}],\n\
+         \x20   lumps: [f64; {lump_count}],\n}}\n",
+        m.gait, m.robot
+    );
+    let (ty, numbers) = (format!("{runtime}::Description"), description(m, &key(robot, &m.gait), &gait, runtime));
+    constant(
+        "What the gait of the specification's robot is made of, in numbers.",
+        "DESCRIPTION",
+        &ty,
+        numbers,
+        &mut out,
+    );
+    let ty = format!("&[{runtime}::family::Parameter; {parameter_count}]");
+    let shared = Layout::Word("&super::PARAMETERS".into());
+    constant("What distinguishes the robots of the family.", "PARAMETERS", &ty, shared, &mut out);
+    out += &format!("impl {runtime}::Gait for {name} {{");
+    let field = |name: &str| Layout::Word(format!("&self.{name}"));
+    getter("description", &format!("&{runtime}::Description"), field("description"), &mut out);
+    getter("latex", "&'static str", Layout::value(latex), &mut out);
+    methods(&gait, &mut out);
+    out += &format!(
+        "\n}}\nimpl {runtime}::family::Parametric for {name} {{\n\
+         \x20   fn with(parameters: &[f64]) -> Result<Self, {runtime}::family::Unfit> {{\n\
+         \x20       let (description, parameters) =\n\
+         \x20           {runtime}::family::fit(&DESCRIPTION, PARAMETERS, parameters, numbers)?;\n\
+         \x20       Ok({name} {{ description, lumps: lumps(&parameters), parameters }})\n\
+         \x20   }}"
+    );
+    getter("parameters", "&[f64]", field("parameters"), &mut out);
+    getter("lumps", "&[f64]", field("lumps"), &mut out);
+    methods(&[sensitivity, vec![jacobian]].concat(), &mut out);
+    out + "\n}\n"
 }
 
 /// Name of the generated file of a gait.
@@ -97,9 +94,9 @@ fn parameters_source(parameters: &[Parameter], runtime: &str) -> String {
             Sign::NonNegative => "NonNegative",
             Sign::Positive => "Positive",
         };
-        let (name, unit, value) = (&p.name, p.unit, float(p.value));
+        let (name, unit, value) = (&p.name, p.unit, p.value + 0.0);
         source += &format!(
-            "{runtime}::family::Parameter {{ name: {name:?}, unit: {unit:?}, value: {value}, \
+            "{runtime}::family::Parameter {{ name: {name:?}, unit: {unit:?}, value: {value:?}, \
              sign: {runtime}::family::Sign::{sign} }}, "
         );
     }

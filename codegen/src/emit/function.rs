@@ -6,7 +6,7 @@ use super::{batch, type_name};
 use crate::dynamics::{Kernel, Shape};
 use crate::expr::Ring;
 use crate::program::{Operations, Program};
-use proc_macro2::{Ident, Span};
+use rayon::prelude::*;
 use std::fmt::Write;
 
 /// A kernel with its program, ready to be written.
@@ -21,14 +21,15 @@ pub struct Function<'a> {
     pub source: String,
 }
 
+/// A function for each kernel, in order.
+pub fn functions<'a>(ring: &'a Ring, kernels: &'a [Kernel]) -> Vec<Function<'a>> {
+    kernels.par_iter().map(|kernel| Function::new(ring, kernel)).collect()
+}
+
 /// `inverse_jacobian2` → (`inverse_jacobian`, true): leg kernels end in the leg's number.
 pub fn base_name(name: &str) -> (&str, bool) {
     let base = name.trim_end_matches(|c: char| c.is_ascii_digit());
     (base, base.len() != name.len())
-}
-
-pub fn ident(name: &str) -> Ident {
-    Ident::new(name, Span::call_site())
 }
 
 impl Function<'_> {

@@ -1,20 +1,16 @@
 //! One generated module per gait.
 
-use super::description::{description, float};
-use super::function::{Function, base_name, ident};
+use super::description::description;
+use super::function::{Function, base_name, functions};
+use super::layout::{Layout, indent, line};
 use super::modules::key;
 use super::type_name;
 use crate::dynamics::{Input, Kernel, LUMPS, PARAMETERS, Shape, kernels};
 use crate::mechanism::{Lever, Mechanism};
-use proc_macro2::{Literal, TokenStream};
-use quote::quote;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Source of one gait's module, of a robot with or without a module of its own; `whole` is the module of the whole
 /// robot. `latex` are the gait's closed forms, `runtime` is the path of the module with the `Gait` trait; without it there are functions only.
-///
-/// # Errors
-/// If what was generated is not Rust: a defect of the generator.
 pub fn gait_source(
     mechanism: &Mechanism,
     levers: &[Lever],
@@ -23,17 +19,21 @@ pub fn gait_source(
     latex: &str,
     runtime: Option<&str>,
     origin: &str,
-) -> Result<String, String> {
+) -> String {
     let (model, kernels) = kernels(mechanism);
-    let functions: Vec<Function> = kernels.iter().map(|k| Function::new(&model.ring, k)).collect();
-    let items = items(&functions);
-    let gait = match runtime {
-        Some(runtime) => {
-            implementation(mechanism, levers, &key(robot, &mechanism.gait), whole, &functions, latex, runtime)?
-        }
-        None => TokenStream::new(),
-    };
-    written(&items, gait, origin)
+    let functions = functions(&model.ring, &kernels);
+    let mut source = header(origin);
+    source += &items(&functions);
+    if let Some(runtime) = runtime {
+        let key = key(robot, &mechanism.gait);
+        source += &implementation(mechanism, levers, &key, whole, &functions, latex, runtime);
+    }
+    source
+}
+
+/// How a module begins.
+pub(super) fn header(origin: &str) -> String {
+    format!("// {origin}\nuse super::math;\n")
 }
 
 /// The functions of a module, with the structs that they return.
@@ -51,16 +51,6 @@ pub(super) fn items(functions: &[Function]) -> String {
     items
 }
 
-pub(super) fn path(runtime: &str) -> Result<TokenStream, String> {
-    runtime.parse().map_err(|e| format!("`{runtime}` is not a path: {e}"))
-}
-
-/// A module: its functions and what else it has.
-pub(super) fn written(items: &str, rest: TokenStream, origin: &str) -> Result<String, String> {
-    let rest = syn::parse2::<syn::File>(rest).map_err(|e| format!("generated code does not parse: {e}"))?;
-    Ok(format!("// {origin}\nuse super::math;\n{items}{}", prettyplease::unparse(&rest)))
-}
-
 /// The gait's type with its description and its `impl Gait`.
 fn implementation(
     m: &Mechanism,
@@ -70,43 +60,60 @@ fn implementation(
     functions: &[Function],
     latex: &str,
     runtime: &str,
-) -> Result<TokenStream, String> {
-    let runtime = path(runtime)?;
-    let levers = levers.iter().map(|l| lever(l, &runtime));
-    let name = ident(&type_name(&m.gait));
-    let doc = format!(" The {} of `{}`.", m.gait, m.robot);
-    let description = description(m, key, functions, &runtime);
-    let whole = ident(whole);
-    let methods = methods(functions);
-    Ok(quote! {
-        #[doc = #doc]
-        #[derive(Clone, Copy, Debug, Default)]
-        pub struct #name;
-        #[doc = " What the gait is made of, in numbers."]
-        pub static DESCRIPTION: #runtime::Description = #description;
-        impl #runtime::Gait for #name {
-            fn description(&self) -> &#runtime::Description { &DESCRIPTION }
-            fn latex(&self) -> &'static str { #latex }
-            fn levers(&self) -> &'static [#runtime::Lever] { &[#(#levers),*] }
-            fn whole(&self) -> Option<&'static dyn #runtime::whole::Whole> { Some(&super::#whole::Whole) }
-            #methods
-        }
-    })
+) -> String {
+    let name = type_name(&m.gait);
+    let mut out =
+        format!("/// The {} of `{}`.\n#[derive(Clone, Copy, Debug, Default)]\npub struct {name};\n", m.gait, m.robot);
+    let ty = format!("{runtime}::Description");
+    constant(
+        "What the gait is made of, in numbers.",
+        "DESCRIPTION",
+        &ty,
+        description(m, key, functions, runtime),
+        &mut out,
+    );
+    out += &format!("impl {runtime}::Gait for {name} {{");
+    let slice = Layout::list("&[", levers.iter().map(|l| lever(l, runtime)), "]");
+    let whole_robot = format!("Option<&'static dyn {runtime}::whole::Whole>");
+    getter("description", &format!("&{ty}"), Layout::Word("&DESCRIPTION".into()), &mut out);
+    getter("latex", "&'static str", Layout::value(latex), &mut out);
+    getter("levers", &format!("&'static [{runtime}::Lever]"), slice, &mut out);
+    getter("whole", &whole_robot, Layout::Word(format!("Some(&super::{whole}::Whole)")), &mut out);
+    methods(functions, &mut out);
+    out + "\n}\n"
+}
+
+/// A documented static.
+pub(super) fn constant(doc: &str, name: &str, ty: &str, value: Layout, out: &mut String) {
+    *out += &format!("/// {doc}\npub static {name}: {ty} = ");
+    value.write(out, 0);
+    *out += ";\n";
+}
+
+/// A trait's method that hands out a value.
+pub(super) fn getter(name: &str, ty: &str, value: Layout, out: &mut String) {
+    line(out, &format!("fn {name}(&self) -> {ty} {{"), 1);
+    indent(out, 2);
+    value.write(out, 2);
+    line(out, "}", 1);
 }
 
 /// A number of the specification as a value of the runtime's type.
-fn lever(lever: &Lever, runtime: &TokenStream) -> TokenStream {
+fn lever(lever: &Lever, runtime: &str) -> Layout {
     let Lever { name, unit, value, slopes } = lever;
-    let value = float(*value);
-    let slopes = slopes.iter().map(|(number, slope)| {
-        let (number, slope) = (Literal::usize_unsuffixed(*number), float(*slope));
-        quote!((#number, #slope))
-    });
-    quote!(#runtime::Lever { name: #name, unit: #unit, value: #value, slopes: &[#(#slopes),*] })
+    Layout::record(
+        format!("{runtime}::Lever"),
+        [
+            ("name", Layout::value(name)),
+            ("unit", Layout::value(unit)),
+            ("value", Layout::float(*value)),
+            ("slopes", Layout::list("&[", slopes.iter().map(Layout::value), "]")),
+        ],
+    )
 }
 
 /// Trait methods: per kernel one that takes slices and writes all outputs one after another.
-pub(super) fn methods(functions: &[Function]) -> TokenStream {
+pub(super) fn methods(functions: &[Function], out: &mut String) {
     let mut by_base: BTreeMap<&str, Vec<&Kernel>> = BTreeMap::new();
     let mut order = Vec::new();
     for function in functions {
@@ -117,27 +124,26 @@ pub(super) fn methods(functions: &[Function]) -> TokenStream {
         }
         list.push(function.kernel);
     }
-    let mut methods = TokenStream::new();
     for base in order {
-        let (name, twins) = (ident(base), &by_base[base]);
-        let per_leg = base_name(&twins[0].name).1;
-        let leg = per_leg.then(|| quote!(leg: usize,));
-        let parameters = twins[0].inputs.iter().filter(|i| !is_of_robot(i)).map(|i| {
-            let name = ident(i.name);
-            if i.scalar { quote!(#name: f64) } else { quote!(#name: &[f64]) }
-        });
-        let calls: Vec<TokenStream> = twins.iter().map(|k| call(k)).collect();
-        let body = match calls.as_slice() {
-            [one] => one.clone(),
-            [first, second, ..] => quote!(if leg == 0 { #first } else { #second }),
-            [] => TokenStream::new(),
-        };
-        methods.extend(quote! {
-            #[inline]
-            fn #name(&self, #leg #(#parameters,)* out: &mut [f64]) { #body }
-        });
+        let twins = &by_base[base];
+        let leg = base_name(&twins[0].name).1.then(|| "leg: usize".to_string());
+        let inputs = twins[0].inputs.iter().filter(|i| !is_of_robot(i));
+        let inputs = inputs.map(|i| format!("{}: {}", i.name, if i.scalar { "f64" } else { "&[f64]" }));
+        let parameters = ["&self".into()].into_iter().chain(leg).chain(inputs).chain(["out: &mut [f64]".into()]);
+        line(out, "#[inline]", 1);
+        indent(out, 1);
+        Layout::list(format!("fn {base}("), parameters.map(Layout::Word), ") {").write(out, 1);
+        if let [first, second, ..] = twins[..] {
+            line(out, "if leg == 0 {", 2);
+            call(first, out, 3);
+            line(out, "} else {", 2);
+            call(second, out, 3);
+            line(out, "}", 2);
+        } else {
+            call(twins[0], out, 2);
+        }
+        line(out, "}", 1);
     }
-    methods
 }
 
 /// Whether an input is a property of the robot rather than of its state.
@@ -146,44 +152,32 @@ fn is_of_robot(input: &Input) -> bool {
 }
 
 /// A call with checked lengths; outputs that do not fit the inputs become NaN rather than a panic.
-fn call(kernel: &Kernel) -> TokenStream {
-    let function = ident(&kernel.name);
-    let arrays: Vec<_> = kernel.inputs.iter().filter(|i| !i.scalar && !is_of_robot(i)).map(|i| ident(i.name)).collect();
-    let arguments = kernel.inputs.iter().map(|i| {
-        let name = ident(i.name);
-        if is_of_robot(i) { quote!(&self.#name) } else { quote!(#name) }
-    });
-    let checks = (!arrays.is_empty()).then(|| {
-        quote! {
-            let (#(Some(#arrays),)*) = (#(#arrays.first_chunk(),)*) else {
-                out.fill(f64::NAN);
-                return;
-            };
-        }
-    });
-    let write = |value: TokenStream, shape: Shape| match shape {
-        Shape::Scalar => quote!(core::slice::from_ref(&#value)),
-        Shape::Vector(_) => quote!(#value.as_slice()),
-        Shape::Matrix(..) => quote!(#value.as_flattened()),
-    };
-    let pieces: Vec<TokenStream> = match kernel.outputs.as_slice() {
-        [one] => vec![write(quote!(r), one.shape)],
-        several => several
-            .iter()
-            .map(|o| {
-                let field = ident(o.name);
-                write(quote!(r.#field), o.shape)
-            })
-            .collect(),
-    };
-    quote! {
-        #checks
-        let r = #function(#(#arguments),*);
-        let mut rest = out;
-        for piece in [#(#pieces),*] {
-            let Some((head, tail)) = rest.split_at_mut_checked(piece.len()) else { return };
-            head.copy_from_slice(piece);
-            rest = tail;
-        }
+fn call(kernel: &Kernel, out: &mut String, depth: usize) {
+    for input in kernel.inputs.iter().filter(|i| !i.scalar && !is_of_robot(i)) {
+        line(
+            out,
+            &format!("let Some({0}) = {0}.first_chunk() else {{ return out.fill(f64::NAN) }};", input.name),
+            depth,
+        );
     }
+    let argument = |i: &Input| if is_of_robot(i) { format!("&self.{}", i.name) } else { i.name.into() };
+    indent(out, depth);
+    let arguments = kernel.inputs.iter().map(argument).map(Layout::Word);
+    Layout::list(format!("let r = {}(", kernel.name), arguments, ");").write(out, depth);
+    let slice = |value: &str, shape: Shape| match shape {
+        Shape::Scalar => format!("core::slice::from_ref(&{value})"),
+        Shape::Vector(_) => format!("{value}.as_slice()"),
+        Shape::Matrix(..) => format!("{value}.as_flattened()"),
+    };
+    let pieces: Vec<String> = match kernel.outputs.as_slice() {
+        [one] => vec![slice("r", one.shape)],
+        several => several.iter().map(|o| slice(&format!("r.{}", o.name), o.shape)).collect(),
+    };
+    line(out, "let mut rest = out;", depth);
+    indent(out, depth);
+    Layout::list("for piece in [", pieces.into_iter().map(Layout::Word), "] {").write(out, depth);
+    line(out, "let Some((head, tail)) = rest.split_at_mut_checked(piece.len()) else { return };", depth + 1);
+    line(out, "head.copy_from_slice(piece);", depth + 1);
+    line(out, "rest = tail;", depth + 1);
+    line(out, "}", depth);
 }

@@ -1,12 +1,16 @@
 //! How generated code is laid out: what is too long for a line is broken, a list into an item per line, a sum
 //! before its signs.
 
+use std::fmt::Debug;
+
 /// Width of a line.
 const WIDTH: usize = 110;
 const INDENT: &str = "    ";
 
 /// A piece of code.
 pub enum Layout {
+    /// Never broken.
+    Word(String),
     /// Broken before `+` and `-` where it is too long.
     Sum(String),
     /// Items between brackets, with commas.
@@ -18,9 +22,38 @@ impl Layout {
         Layout::List { open: open.into(), items: items.into_iter().collect(), close: close.into() }
     }
 
+    /// A value whose form for debugging is Rust: a number, a text, an option or an array of these.
+    pub fn value(value: impl Debug) -> Layout {
+        Layout::Word(format!("{value:?}"))
+    }
+
+    /// A number, zero without a sign.
+    pub fn float(value: f64) -> Layout {
+        Layout::value(value + 0.0)
+    }
+
+    pub fn floats<const N: usize>(values: [f64; N]) -> Layout {
+        Layout::value(values.map(|v| v + 0.0))
+    }
+
+    /// A struct's value: its type and its fields with their names.
+    pub fn record<'n>(ty: String, fields: impl IntoIterator<Item = (&'n str, Layout)>) -> Layout {
+        Layout::list(ty + " { ", fields.into_iter().map(|(name, value)| value.after(&format!("{name}: "))), " }")
+    }
+
+    /// With this before it.
+    pub fn after(self, text: &str) -> Layout {
+        match self {
+            Layout::Word(word) => Layout::Word(text.to_string() + &word),
+            Layout::Sum(sum) => Layout::Sum(text.to_string() + &sum),
+            Layout::List { open, items, close } => Layout::List { open: text.to_string() + &open, items, close },
+        }
+    }
+
     /// Writes it after what `out` ends in, whose line begins with `depth` indents.
     pub fn write(&self, out: &mut String, depth: usize) {
         match self {
+            Layout::Word(text) => out.push_str(text),
             Layout::Sum(text) => sum(out, text, depth),
             Layout::List { open, items, close } if column(out) + self.width() < WIDTH => {
                 out.push_str(open);
@@ -46,7 +79,7 @@ impl Layout {
     /// On one line.
     fn width(&self) -> usize {
         match self {
-            Layout::Sum(text) => text.len(),
+            Layout::Word(text) | Layout::Sum(text) => text.len(),
             Layout::List { open, items, close } => {
                 open.len() + items.iter().map(|i| i.width() + ", ".len()).sum::<usize>() + close.len()
             }

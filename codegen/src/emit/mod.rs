@@ -1,7 +1,7 @@
 //! Rust source from programs: one documented function per kernel, one file per gait.
 //!
 //! The functions are straight lines of `let`s over named values: no allocation, no indexing, no
-//! branch. They are written as text; the little that is left of a module goes through `quote`.
+//! branch.
 
 mod batch;
 mod body;

@@ -2,6 +2,7 @@
 
 use super::whole::{whole_file_name, whole_module};
 use super::{MATH, module_name, type_name};
+use crate::spec::name;
 
 /// Name of the module of a whole robot. Those of further ways to lock its joints have a number behind it.
 pub(super) const WHOLE: &str = "whole";
@@ -37,7 +38,7 @@ pub fn check_modules(robots: &[(&str, Vec<String>)]) -> Result<(), String> {
         }
     }
     for (robot, _) in robots.iter().filter(|(robot, _)| !robot.is_empty()) {
-        let why = if syn::parse_str::<syn::Ident>(robot).is_err() {
+        let why = if !name::is_of_rust(robot) {
             "this is no name in Rust"
         } else if *robot != module_name(robot) {
             "write it in small letters"

@@ -1,28 +1,24 @@
 //! The module of a whole robot, which its gaits share.
 
-use super::description::{body, float, floats};
-use super::function::Function;
-use super::gait::{items, methods, path, written};
+use super::description::body;
+use super::function::{Function, functions};
+use super::gait::{constant, getter, header, items, methods};
+use super::layout::Layout;
 use super::modules::{WHOLE, key};
 use crate::dynamics::whole_kernels;
-use crate::mechanism::Whole;
-use proc_macro2::TokenStream;
-use quote::quote;
+use crate::mechanism::{Whole, WholeJoint, WholeLeg};
 
 /// Source of the module of a robot. `runtime` is the path of the module with the `Whole` trait; without it there
 /// are functions only.
-///
-/// # Errors
-/// If what was generated is not Rust: a defect of the generator.
-pub fn whole_source(whole: &Whole, runtime: Option<&str>, origin: &str) -> Result<String, String> {
+pub fn whole_source(whole: &Whole, runtime: Option<&str>, origin: &str) -> String {
     let (ring, kernels) = whole_kernels(whole);
-    let functions: Vec<Function> = kernels.iter().map(|k| Function::new(&ring, k)).collect();
-    let items = items(&functions);
-    let robot = match runtime {
-        Some(runtime) => implementation(whole, &functions, runtime)?,
-        None => TokenStream::new(),
-    };
-    written(&items, robot, origin)
+    let functions = functions(&ring, &kernels);
+    let mut source = header(origin);
+    source += &items(&functions);
+    if let Some(runtime) = runtime {
+        implementation(whole, &functions, runtime, &mut source);
+    }
+    source
 }
 
 /// Name of the module with the `number`-th way in which the gaits of a robot lock its joints.
@@ -35,33 +31,40 @@ pub fn whole_file_name(robot: &str, number: usize) -> String {
     key(robot, &format!("{}.rs", whole_module(number)))
 }
 
-fn implementation(whole: &Whole, functions: &[Function], runtime: &str) -> Result<TokenStream, String> {
-    let runtime = path(runtime)?;
-    let doc = format!(" The whole robot `{}`.", whole.robot);
-    let (robot, gravity) = (&whole.robot, float(whole.gravity));
-    let bodies = whole.bodies.iter().map(|b| body(b, &runtime));
-    let joints = whole.joints.iter().map(|j| {
-        let (name, rotor) = (&j.name, float(j.rotor_inertia));
-        quote!(#runtime::whole::Joint { name: #name, rotor_inertia: #rotor })
-    });
-    let legs = whole.legs.iter().map(|l| {
-        let (name, start, end, foot_body, foot) = (&l.name, l.joints.start, l.joints.end, l.foot_body, floats(&l.foot));
-        quote! {
-            #runtime::whole::Leg { name: #name, joints: #start..#end, foot_body: #foot_body, foot: #foot }
-        }
-    });
-    let methods = methods(functions);
-    Ok(quote! {
-        #[doc = #doc]
-        #[derive(Clone, Copy, Debug, Default)]
-        pub struct Whole;
-        #[doc = " What the robot is made of, in numbers."]
-        pub static DESCRIPTION: #runtime::whole::Description = #runtime::whole::Description {
-            robot: #robot, gravity: #gravity, bodies: &[#(#bodies),*], joints: &[#(#joints),*], legs: &[#(#legs),*],
-        };
-        impl #runtime::whole::Whole for Whole {
-            fn description(&self) -> &'static #runtime::whole::Description { &DESCRIPTION }
-            #methods
-        }
-    })
+fn implementation(whole: &Whole, functions: &[Function], runtime: &str, out: &mut String) {
+    *out +=
+        &format!("/// The whole robot `{}`.\n#[derive(Clone, Copy, Debug, Default)]\npub struct Whole;\n", whole.robot);
+    let ty = format!("{runtime}::whole::Description");
+    let numbers = Layout::record(
+        ty.clone(),
+        [
+            ("robot", Layout::value(&whole.robot)),
+            ("gravity", Layout::float(whole.gravity)),
+            ("bodies", Layout::list("&[", whole.bodies.iter().map(|b| body(b, runtime)), "]")),
+            ("joints", Layout::list("&[", whole.joints.iter().map(|j| joint(j, runtime)), "]")),
+            ("legs", Layout::list("&[", whole.legs.iter().map(|l| leg(l, runtime)), "]")),
+        ],
+    );
+    constant("What the robot is made of, in numbers.", "DESCRIPTION", &ty, numbers, out);
+    *out += &format!("impl {runtime}::whole::Whole for Whole {{");
+    getter("description", &format!("&'static {ty}"), Layout::Word("&DESCRIPTION".into()), out);
+    methods(functions, out);
+    *out += "\n}\n";
+}
+
+fn joint(j: &WholeJoint, runtime: &str) -> Layout {
+    let fields = [("name", Layout::value(&j.name)), ("rotor_inertia", Layout::float(j.rotor_inertia))];
+    Layout::record(format!("{runtime}::whole::Joint"), fields)
+}
+
+fn leg(l: &WholeLeg, runtime: &str) -> Layout {
+    Layout::record(
+        format!("{runtime}::whole::Leg"),
+        [
+            ("name", Layout::value(&l.name)),
+            ("joints", Layout::value(&l.joints)),
+            ("foot_body", Layout::value(l.foot_body)),
+            ("foot", Layout::floats(l.foot)),
+        ],
+    )
 }

@@ -5,8 +5,8 @@
 
 use super::laws::OF_SUMS_OF_ANGLES;
 use super::poly::{Monomial, Poly, Terms, Var, times};
-use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Mutex;
 
 /// What an atom stands for.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,7 +34,8 @@ pub struct Ring {
     rates: BTreeMap<Var, Var>,
     /// Memo of sums of symbols (rates of angles), so that each is bound once.
     sums: BTreeMap<Vec<Var>, Var>,
-    derivatives: RefCell<BTreeMap<(Var, Var), Poly>>,
+    /// Memo of derivatives of bound atoms.
+    derivatives: Mutex<BTreeMap<(Var, Var), Poly>>,
 }
 
 impl Ring {
@@ -180,7 +181,9 @@ impl Ring {
 
     /// The derivative of a bound atom.
     fn with_inner_derivative(&self, atom: Var, by: Var, then: impl FnOnce(&Poly)) {
-        if let Some(known) = self.derivatives.borrow().get(&(atom, by)) {
+        if let Ok(known) = self.derivatives.lock()
+            && let Some(known) = known.get(&(atom, by))
+        {
             return then(known);
         }
         let result = match &self.plain[atom.index()] {
@@ -192,7 +195,9 @@ impl Ring {
             _ => Poly::zero(),
         };
         then(&result);
-        self.derivatives.borrow_mut().insert((atom, by), result);
+        if let Ok(mut known) = self.derivatives.lock() {
+            known.insert((atom, by), result);
+        }
     }
 
     /// d/dt of an expression in coordinates and rates (each coordinate's rate replaces its derivative).
@@ -296,7 +301,7 @@ impl Ring {
             && let Kind::Bound(definition) | Kind::Reciprocal(definition) = &mut self.plain[atom.index()]
         {
             *definition = equal;
-            self.derivatives.borrow_mut().clear();
+            self.derivatives = Mutex::default();
         }
     }
 

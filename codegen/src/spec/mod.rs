@@ -27,7 +27,7 @@ mod gait;
 mod keys;
 mod locked;
 mod mirror;
-mod name;
+pub(crate) mod name;
 mod nearest;
 mod pairing;
 mod rigid;

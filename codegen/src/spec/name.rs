@@ -19,6 +19,12 @@ fn is_usable(name: &str) -> bool {
     letters.next().is_some_and(|c| c.is_ascii_alphabetic()) && letters.all(|c| c.is_ascii_alphanumeric() || c == '_')
 }
 
+/// Whether a module can have this name.
+pub fn is_of_rust(name: &str) -> bool {
+    let begins = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_') && name != "_";
+    begins && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') && !KEYWORDS.contains(&name)
+}
+
 /// A usable name like this one.
 fn usable(name: &str) -> String {
     let cleaned: String = name.chars().take(40).map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
