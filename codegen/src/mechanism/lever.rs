@@ -5,9 +5,10 @@
 //! and links that a locked joint joins have a common mass centre. So slopes are taken at the specification's values,
 //! by differences that leave rounding only.
 
-use super::parameter::{parameters, with};
-use super::{Actuated, Mechanism};
+use super::parameter::{Place, Sign};
+use super::{Actuated, Mechanism, parameter};
 use crate::spec::{Gait, Limits, Robot};
+use std::fmt::Arguments;
 
 /// A number of the specification.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,31 +26,33 @@ const STEP: f64 = 1.0 / 1024.0;
 
 /// All numbers that a gait depends on. Both must have passed validation.
 pub fn levers(robot: &Robot, gait: &Gait) -> Vec<Lever> {
-    let physical: Vec<_> = parameters(robot).into_iter().map(|p| (p.name, p.unit, p.value)).collect();
-    let numbers = |name: &str, value: f64| {
-        let mut gait = gait.clone();
-        let robot = if physical.iter().any(|known| known.0 == name) {
-            with(robot, |other| (other == name).then_some(value))
-        } else {
-            let mut robot = robot.clone();
-            let places = places(&mut robot, &mut gait.limits).into_iter().filter(|place| place.0 == name);
-            places.for_each(|(_, _, number)| *number = value);
-            robot
-        };
+    let mut named: Vec<(String, &'static str, f64)> = Vec::new();
+    // What stands at each place, as a number of the list.
+    let mut at = Vec::new();
+    places(&mut robot.clone(), &mut gait.limits.clone(), |place| {
+        let name = place.name.to_string();
+        let known = named.iter().position(|known| known.0 == name);
+        at.push(known.unwrap_or(named.len()));
+        if known.is_none() {
+            named.push((name, place.unit, place.value()));
+        }
+    });
+    let numbers = |lever: usize, value: f64| {
+        let (mut robot, mut gait) = (robot.clone(), gait.clone());
+        let mut at = at.iter();
+        places(&mut robot, &mut gait.limits, |place| {
+            if at.next() == Some(&lever) {
+                place.set(value);
+            }
+        });
         let robot = robot.locked(&gait.locked).ok()?;
         let mechanism = Mechanism::new(&robot, &gait);
         Some([mechanism.numbers(), mechanism.limiting_numbers()].concat())
     };
-    let mut named: Vec<(String, &'static str, f64)> = physical.clone();
-    for (name, unit, number) in places(&mut robot.clone(), &mut gait.limits.clone()) {
-        if named.iter().all(|known| known.0 != name) {
-            named.push((name, unit, *number));
-        }
-    }
-    let lever = |(name, unit, value): (String, &'static str, f64)| {
+    let lever = |(k, (name, unit, value)): (usize, (String, &'static str, f64))| {
         let size = if value == 0.0 { 1.0 } else { value.abs() };
         let difference = |h: f64| -> Option<Vec<f64>> {
-            let (above, below) = (numbers(&name, value + h)?, numbers(&name, value - h)?);
+            let (above, below) = (numbers(k, value + h)?, numbers(k, value - h)?);
             Some(above.iter().zip(&below).map(|(a, b)| (a - b) / (2.0 * h)).collect())
         };
         let (wide, narrow) = (difference(size * STEP)?, difference(size * STEP / 2.0)?);
@@ -57,7 +60,7 @@ pub fn levers(robot: &Robot, gait: &Gait) -> Vec<Lever> {
         let slopes = wide.iter().zip(&narrow).map(slope).enumerate().filter(|(_, slope)| *slope != 0.0).collect();
         Some(Lever { name, unit, value, slopes })
     };
-    named.into_iter().filter_map(lever).filter(|lever| !lever.slopes.is_empty()).collect()
+    named.into_iter().enumerate().filter_map(lever).filter(|lever| !lever.slopes.is_empty()).collect()
 }
 
 /// To the digits that differences can give; what cancels to rounding is zero.
@@ -80,29 +83,29 @@ impl Mechanism {
     }
 }
 
-/// Where the specification has limits: name, unit, number.
-fn places<'s>(robot: &'s mut Robot, limits: &'s mut Limits) -> Vec<(String, &'static str, &'s mut f64)> {
-    let mut places = Vec::new();
+/// Visits all numbers of a specification: those of the robot, then what only limits.
+fn places(robot: &mut Robot, limits: &mut Limits, mut visit: impl FnMut(Place)) {
+    parameter::places(robot, &mut visit);
+    let mut add = |name: Arguments, unit, number: &mut f64| {
+        visit(Place { name, unit, sign: Sign::Any, negative: false, number });
+    };
     for segment in robot.legs.iter_mut().flat_map(|leg| &mut leg.chain) {
         let joint = &mut segment.joint;
-        let [lower, upper] = &mut joint.range;
-        places.push((format!("joints.{}.range.lower", joint.name), "rad", lower));
-        places.push((format!("joints.{}.range.upper", joint.name), "rad", upper));
+        let ([lower, upper], name) = (&mut joint.range, &joint.name);
+        add(format_args!("joints.{name}.range.lower"), "rad", lower);
+        add(format_args!("joints.{name}.range.upper"), "rad", upper);
         let motor = &mut joint.actuator;
-        let name = |key: &str| format!("actuators.{}.{key}", motor.name);
-        places.push((name("gear"), "", &mut motor.gear));
-        places.push((name("max_torque"), "N·m", &mut motor.max_torque));
-        places.push((name("max_speed.unloaded"), "rev/min", &mut motor.unloaded_speed));
-        places.push((name("max_speed.at_max_torque"), "rev/min", &mut motor.loaded_speed));
+        let name = &motor.name;
+        add(format_args!("actuators.{name}.gear"), "", &mut motor.gear);
+        add(format_args!("actuators.{name}.max_torque"), "N·m", &mut motor.max_torque);
+        add(format_args!("actuators.{name}.max_speed.unloaded"), "rev/min", &mut motor.unloaded_speed);
+        add(format_args!("actuators.{name}.max_speed.at_max_torque"), "rev/min", &mut motor.loaded_speed);
     }
     let [shortest, longest] = &mut limits.half_step_duration;
-    places.extend([
-        ("limits.friction".into(), "", &mut limits.friction),
-        ("limits.min_vertical_force".into(), "N", &mut limits.min_vertical_force),
-        ("limits.swing_clearance".into(), "m", &mut limits.swing_clearance),
-        ("limits.half_step_duration.shortest".into(), "s", shortest),
-        ("limits.half_step_duration.longest".into(), "s", longest),
-        ("limits.min_platform_height".into(), "m", &mut limits.min_platform_height),
-    ]);
-    places
+    add(format_args!("limits.friction"), "", &mut limits.friction);
+    add(format_args!("limits.min_vertical_force"), "N", &mut limits.min_vertical_force);
+    add(format_args!("limits.swing_clearance"), "m", &mut limits.swing_clearance);
+    add(format_args!("limits.half_step_duration.shortest"), "s", shortest);
+    add(format_args!("limits.half_step_duration.longest"), "s", longest);
+    add(format_args!("limits.min_platform_height"), "m", &mut limits.min_platform_height);
 }

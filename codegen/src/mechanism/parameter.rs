@@ -6,6 +6,7 @@
 //! link's axis) stays zero. The numbers of a link with a foot that has mass are those of both.
 
 use crate::spec::{Inertia, Leg, Robot};
+use std::fmt::Arguments;
 
 /// A number of the real robot that can stay symbolic.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,25 +27,35 @@ pub enum Sign {
     Positive,
 }
 
-/// A place in the robot's description that holds `±` a parameter.
-struct Place<'r> {
-    name: String,
-    unit: &'static str,
-    sign: Sign,
+/// A place in the robot's description that holds `±` a parameter. Most visitors need no name, so it is not written out.
+pub struct Place<'r> {
+    pub name: Arguments<'r>,
+    pub unit: &'static str,
+    pub sign: Sign,
     /// The parameter is minus what stands there.
-    negative: bool,
-    number: &'r mut f64,
+    pub negative: bool,
+    pub number: &'r mut f64,
+}
+
+impl Place<'_> {
+    pub fn value(&self) -> f64 {
+        if self.negative { -*self.number } else { *self.number }
+    }
+
+    pub fn set(self, value: f64) {
+        *self.number = if self.negative { -value } else { value };
+    }
 }
 
 /// All parameters of a robot, in the order in which the specification's tables are read.
 pub fn parameters(robot: &Robot) -> Vec<Parameter> {
     let mut found: Vec<Parameter> = Vec::new();
-    for place in places(&mut robot.clone()) {
-        if found.iter().all(|p| p.name != place.name) {
-            let value = if place.negative { -*place.number } else { *place.number };
-            found.push(Parameter { name: place.name, unit: place.unit, value, sign: place.sign });
+    places(&mut robot.clone(), |place| {
+        let name = place.name.to_string();
+        if found.iter().all(|p| p.name != name) {
+            found.push(Parameter { name, unit: place.unit, value: place.value(), sign: place.sign });
         }
-    }
+    });
     found
 }
 
@@ -67,82 +78,81 @@ pub fn select(robot: &Robot, patterns: &[String]) -> Result<Vec<Parameter>, Stri
 /// The robot with the numbers for which `value` has one.
 pub fn with(robot: &Robot, value: impl Fn(&str) -> Option<f64>) -> Robot {
     let mut changed = robot.clone();
-    for place in places(&mut changed) {
-        if let Some(value) = value(&place.name) {
-            *place.number = if place.negative { -value } else { value };
+    places(&mut changed, |place| {
+        if let Some(value) = value(&place.name.to_string()) {
+            place.set(value);
         }
-    }
+    });
     changed
 }
 
-fn places(robot: &mut Robot) -> Vec<Place<'_>> {
+/// Visits all places, in the order in which the specification's tables are read.
+pub fn places(robot: &mut Robot, mut visit: impl FnMut(Place)) {
+    let names: Vec<String> = robot.legs.iter().map(|leg| leg.name.clone()).collect();
     let mounts: Vec<_> = robot.legs.iter().map(|leg| [0, 1, 2].map(|k| shared_mount(&robot.legs, leg, k))).collect();
-    let mut places = Vec::new();
-    let mut add = |name: String, unit, sign, negative, number| {
-        places.push(Place { name, unit, sign, negative, number });
+    let mut add = |name: Arguments, unit, sign, negative, number: &mut f64| {
+        visit(Place { name, unit, sign, negative, number });
     };
     let xyz = ["x", "y", "z"];
-    add("gravity".into(), "m/s²", Sign::Positive, false, &mut robot.gravity);
+    add(format_args!("gravity"), "m/s²", Sign::Positive, false, &mut robot.gravity);
     let platform = &mut robot.platform;
-    let name = |key: &str| format!("links.{}.{key}", platform.name);
-    add(name("mass"), "kg", Sign::Positive, false, &mut platform.mass);
+    let name = &platform.name;
+    add(format_args!("links.{name}.mass"), "kg", Sign::Positive, false, &mut platform.mass);
     for (number, axis) in platform.com.iter_mut().zip(xyz).filter(|(number, _)| **number != 0.0) {
-        add(name(&format!("com.{axis}")), "m", Sign::Any, false, number);
+        add(format_args!("links.{name}.com.{axis}"), "m", Sign::Any, false, number);
     }
-    inertia(&name("inertia"), ["roll", "yaw", "pitch"], &mut platform.inertia, &mut add);
+    inertia(name, ["roll", "yaw", "pitch"], &mut platform.inertia, &mut add);
     for (leg, mounts) in robot.legs.iter_mut().zip(mounts) {
-        for (number, mount) in leg.mount.iter_mut().zip(mounts) {
-            if let Some((name, negative)) = mount {
-                add(name, "m", Sign::Any, negative, number);
+        for ((number, mount), axis) in leg.mount.iter_mut().zip(mounts).zip(xyz) {
+            if let Some((first, negative)) = mount {
+                add(format_args!("legs.{}.mount.{axis}", names[first]), "m", Sign::Any, negative, number);
             }
         }
         for segment in &mut leg.chain {
             let link = &mut segment.link;
-            let name = |key: &str| format!("links.{}.{key}", link.name);
-            add(name("mass"), "kg", Sign::Positive, false, &mut link.mass);
+            let name = &link.name;
+            add(format_args!("links.{name}.mass"), "kg", Sign::Positive, false, &mut link.mass);
             for (key, sign, place) in [("length", Sign::Positive, &mut link.end), ("com", Sign::Any, &mut link.com)] {
                 // A place on the link's axis is a distance along it.
                 if place[0] == 0.0 && place[2] == 0.0 {
-                    add(name(key), "m", sign, true, &mut place[1]);
+                    add(format_args!("links.{name}.{key}"), "m", sign, true, &mut place[1]);
                     continue;
                 }
                 for (number, axis) in place.iter_mut().zip(xyz) {
-                    add(name(&format!("{key}.{axis}")), "m", Sign::Any, false, number);
+                    add(format_args!("links.{name}.{key}.{axis}"), "m", Sign::Any, false, number);
                 }
             }
-            inertia(&name("inertia"), ["lateral", "axial", "swing"], &mut link.inertia, &mut add);
+            inertia(name, ["lateral", "axial", "swing"], &mut link.inertia, &mut add);
             let actuator = &mut segment.joint.actuator;
-            let name = format!("actuators.{}.rotor_inertia", actuator.name);
+            let name = format_args!("actuators.{}.rotor_inertia", actuator.name);
             add(name, "kg·m²", Sign::NonNegative, false, &mut actuator.rotor_inertia);
         }
     }
-    places
 }
 
 /// Moments under their names in the specification, and those products that are not zero.
-fn inertia<'r>(
-    table: &str,
+fn inertia(
+    link: &str,
     moments: [&str; 3],
-    tensor: &'r mut Inertia,
-    add: &mut impl FnMut(String, &'static str, Sign, bool, &'r mut f64),
+    tensor: &mut Inertia,
+    add: &mut impl FnMut(Arguments, &'static str, Sign, bool, &mut f64),
 ) {
     for (i, number) in tensor.as_flattened_mut().iter_mut().enumerate() {
         let (row, column) = (i / 3, i % 3);
         if row == column {
-            add(format!("{table}.{}", moments[row]), "kg·m²", Sign::NonNegative, false, number);
+            let name = format_args!("links.{link}.inertia.{}", moments[row]);
+            add(name, "kg·m²", Sign::NonNegative, false, number);
         } else if *number != 0.0 {
             // Minus the product stands on either side of the diagonal.
             let axes = ["yz", "zx", "xy"][3 - row - column];
-            add(format!("{table}.products.{axes}"), "kg·m²", Sign::Any, true, number);
+            add(format_args!("links.{link}.inertia.products.{axes}"), "kg·m²", Sign::Any, true, number);
         }
     }
 }
 
-/// Component `k` of a leg's mount: the name of the first leg's that is as far out, and whether this one
-/// is on the other side.
-fn shared_mount(legs: &[Leg], leg: &Leg, k: usize) -> Option<(String, bool)> {
+/// Component `k` of a leg's mount: the first leg that is as far out, and whether this one is on the other side.
+fn shared_mount(legs: &[Leg], leg: &Leg, k: usize) -> Option<(usize, bool)> {
     let number = leg.mount[k];
-    let first = legs.iter().find(|other| other.mount[k].abs() == number.abs())?;
-    let name = format!("legs.{}.mount.{}", first.name, ["x", "y", "z"][k]);
-    (number != 0.0).then_some((name, first.mount[k] != number))
+    let first = legs.iter().position(|other| other.mount[k].abs() == number.abs())?;
+    (number != 0.0).then_some((first, legs[first].mount[k] != number))
 }
