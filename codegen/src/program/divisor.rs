@@ -4,7 +4,7 @@
 //! product is the sum of its factors' hashes, so that a quotient's is a difference. Where a hash
 //! decides about a rewriting, the factors themselves are compared too.
 
-use super::market::Origin;
+use super::market::{Offer, Origin};
 use super::{Id, Sum, Term};
 use smallvec::SmallVec;
 
@@ -41,14 +41,14 @@ pub struct Item {
 #[derive(Clone, Copy, Default)]
 pub struct Shared {
     hash: u64,
-    count: usize,
+    count: u16,
 }
 
 /// Two terms of a sum, of which the first comes first in their divisor.
 pub struct Pair<'a> {
     first: &'a Item,
     second: &'a Item,
-    shared: usize,
+    shared: u16,
 }
 
 /// The mixing of SplitMix64: spreads numbers over all bits.
@@ -119,12 +119,15 @@ impl Item {
         self.marks & marks == marks
     }
 
-    /// Divisors within this term, with their keys and how often they can be extracted.
-    pub fn offers(&self, f: &[Id], number: u32, mut found: impl FnMut(u64, Origin, i32)) {
+    /// Divisors within this term.
+    pub fn offers(&self, f: &[Id], number: u32, mut found: impl FnMut(Offer)) {
+        let mut offer = |key: u64, origin: Origin, times: i16| {
+            found(Offer { key, cost: [1; 2], first: 0, saved: [times; 2], origin });
+        };
         for (i, a) in f.iter().enumerate() {
             let repeated = i > 0 && f[i - 1] == *a;
             if !repeated && self.scaled {
-                found(scaled_key(*a, self.coefficient.abs()), Origin::Scaled(*a, number), 1);
+                offer(scaled_key(*a, self.coefficient.abs()), Origin::Scaled(*a, number), 1);
             }
             let hash = hash_of_node(*a);
             for (j, b) in f.iter().enumerate().skip(i + 1) {
@@ -135,10 +138,10 @@ impl Item {
                     {
                         continue;
                     }
-                    let count = |id: &Id| f.iter().filter(|other| *other == id).count() as i32;
+                    let count = |id: &Id| f.iter().filter(|other| *other == id).count() as i16;
                     times = if a == b { count(a) / 2 } else { count(a).min(count(b)) };
                 }
-                found(mix(hash.wrapping_add(hash_of_node(*b)) ^ 1), Origin::Product(*a, *b), times);
+                offer(mix(hash.wrapping_add(hash_of_node(*b)) ^ 1), Origin::Product(*a, *b), times);
             }
         }
     }
@@ -155,7 +158,7 @@ impl Item {
             for id in other {
                 let hash = hashes[*id as usize];
                 shared.hash = shared.hash.wrapping_add(hash);
-                shared.count += usize::from(hash != 0);
+                shared.count += u16::from(hash != 0);
             }
             shared
         }
@@ -190,41 +193,38 @@ fn shared(a: &[Id], b: &[Id]) -> Shared {
 }
 
 impl<'a> Pair<'a> {
-    /// The pair, its key, and whether the older term comes first in it.
+    /// What two terms offer, given with their numbers: a pair in which either comes first.
     #[inline]
-    pub fn new(older: &'a Item, newer: &'a Item, shared: Shared) -> (Pair<'a>, u64, bool) {
-        let (h1, h2) = (older.hash.wrapping_sub(shared.hash), newer.hash.wrapping_sub(shared.hash));
+    pub fn offer(older: (&Item, u32), newer: (&Item, u32), shared: Shared) -> Offer {
+        let [h1, h2] = [older, newer].map(|(item, _)| item.hash.wrapping_sub(shared.hash));
         let ordered = h1 <= h2;
         let (first, second, h1, h2) = if ordered { (older, newer, h1, h2) } else { (newer, older, h2, h1) };
-        let pair = Pair { first, second, shared: shared.count };
+        let pair = Pair { first: first.0, second: second.0, shared: shared.count };
+        let ratio = exact(pair.second.coefficient / pair.first.coefficient);
         let parts = h1.wrapping_mul(0xD6E8_FEB8_6659_FD93).wrapping_add(h2.rotate_left(23));
-        let key = mix(parts.wrapping_add(rounded(pair.ratio()).wrapping_mul(0x9E37_79B9_7F4A_7C15)));
-        (pair, key, ordered)
+        let key = mix(parts.wrapping_add(rounded(ratio).wrapping_mul(0x9E37_79B9_7F4A_7C15)));
+        let (cost, length) = pair.definition(ratio.abs() != 1.0);
+        Offer { key, cost, first: length, saved: pair.saved(), origin: Origin::Pair(first.1, second.1) }
     }
 
     /// A pair whose first part is known to have so many factors.
     pub fn again(first: &'a Item, second: &'a Item, length: u16) -> Pair<'a> {
-        Pair { first, second, shared: usize::from(first.length - length) }
-    }
-
-    fn ratio(&self) -> f64 {
-        exact(self.second.coefficient / self.first.coefficient)
+        Pair { first, second, shared: first.length - length }
     }
 
     /// Operations that a definition costs, with the first or the second part's coefficient 1, and the first part's factors.
-    pub fn definition(&self) -> ([i32; 2], u16) {
-        let [n1, n2] = [self.first, self.second].map(|item| usize::from(item.length) - self.shared);
-        let products = n1.saturating_sub(1) as i32 + n2.saturating_sub(1) as i32 + 1;
-        let scaled = self.ratio().abs() != 1.0;
-        let scale = |factors: usize| i32::from(factors > 0 && scaled);
-        ([products + scale(n2), products + scale(n1)], n1 as u16)
+    fn definition(&self, scaled: bool) -> ([i16; 2], u16) {
+        let [n1, n2] = [self.first, self.second].map(|item| item.length - self.shared);
+        let products = n1.saturating_sub(1) + n2.saturating_sub(1) + 1;
+        let scale = |factors: u16| u16::from(factors > 0 && scaled);
+        ([n2, n1].map(|factors| (products + scale(factors)) as i16), n1)
     }
 
     /// Operations that it saves to replace it, with the first or the second part's coefficient 1.
     #[inline]
-    pub fn saved(&self) -> [i32; 2] {
-        let saved = self.first.cost() + self.second.cost() + 1 - self.shared as i32;
-        [saved - i32::from(self.first.scaled), saved - i32::from(self.second.scaled)]
+    pub fn saved(&self) -> [i16; 2] {
+        let saved = (self.first.cost + self.second.cost + 1 - self.shared) as i16;
+        [self.first, self.second].map(|item| saved - i16::from(item.scaled))
     }
 }
 

@@ -9,7 +9,7 @@ use super::divisor::{
     Divisor, Factors, Item, Pair, cost, exact, hash_of, marks_of, reset_hashes, rounded, scaled_key, set_hashes,
     without,
 };
-use super::market::{Best, Market, Number, Origin};
+use super::market::{Best, Market, Number, Offer, Origin};
 use super::{Id, Node, Program, Term};
 use smallvec::SmallVec;
 use std::collections::HashMap;
@@ -26,6 +26,9 @@ struct Search<'a> {
     market: Market,
     /// A zero for every node, but while a term is compared with others.
     hashes: Vec<u64>,
+    /// What the term at hand offers, and the numbers of these divisors.
+    offers: Vec<Offer>,
+    numbers: Vec<Number>,
 }
 
 /// The terms that a sum has.
@@ -42,11 +45,12 @@ struct Entry {
     term: u32,
     /// Its number among all terms that the sum ever had.
     birth: u32,
-    /// Where the divisors begin that it is with those born before it.
+    /// Where the divisors begin that it has in itself, and those with the terms born before it.
     row: u32,
+    pairs: u32,
 }
 
-/// What a pair of terms has offered: a divisor, and whether the older of the two comes first in it.
+/// What a term or a pair of terms has offered: a divisor, and whether the older of the two comes first in it.
 #[derive(Clone, Copy, Default)]
 struct Offered(Number);
 
@@ -65,6 +69,8 @@ pub fn factor(program: &mut Program) {
     let mut search = Search {
         places: vec![SmallVec::new(); program.nodes.len()],
         hashes: vec![0; program.nodes.len()],
+        offers: Vec::new(),
+        numbers: Vec::new(),
         nodes: &mut program.nodes,
         terms: Vec::new(),
         sums: program.sums.iter().map(|s| Sum { entries: Vec::with_capacity(s.len()), births: 0 }).collect(),
@@ -104,23 +110,26 @@ impl Search<'_> {
         factors.sort_unstable();
         let item = Item::new(coefficient, &factors);
         let term = self.terms.len() as u32;
-        item.offers(&factors, term, |key, origin, times| {
-            self.market.add(key, [times; 2], origin, || ([1; 2], 0));
-        });
         let Sum { entries, births } = &mut self.sums[sum];
-        let row = self.offered.len();
-        self.offered.resize(row + *births as usize, Offered::default());
-        let offered = &mut self.offered[row..];
+        self.offers.clear();
+        item.offers(&factors, term, |offer| self.offers.push(offer));
+        let alone = self.offers.len();
         set_hashes(&mut self.hashes, &factors);
         for other in entries.iter() {
             let shared = item.shared(&factors, &self.hashes, &other.item, &self.terms[other.term as usize].factors);
-            let (pair, key, ordered) = Pair::new(&other.item, &item, shared);
-            let origin = Origin::Pair(other.term, term);
-            let number = self.market.add(key, pair.saved(), origin, || pair.definition());
-            offered[other.birth as usize] = Offered::new(number, ordered);
+            self.offers.push(Pair::offer((&other.item, other.term), (&item, term), shared));
         }
         reset_hashes(&mut self.hashes, &factors);
-        entries.push(Entry { item, term, birth: *births, row: row as u32 });
+        self.market.add(&self.offers, &mut self.numbers);
+        let row = self.offered.len();
+        self.offered.extend(self.numbers[..alone].iter().map(|number| Offered::new(*number, false)));
+        let pairs = self.offered.len();
+        self.offered.resize(pairs + *births as usize, Offered::default());
+        for ((other, offer), number) in entries.iter().zip(&self.offers[alone..]).zip(&self.numbers[alone..]) {
+            let ordered = matches!(offer.origin, Origin::Pair(first, _) if first == other.term);
+            self.offered[pairs + other.birth as usize] = Offered::new(*number, ordered);
+        }
+        entries.push(Entry { item, term, birth: *births, row: row as u32, pairs: pairs as u32 });
         *births += 1;
         for id in &factors {
             let places = &mut self.places[*id as usize];
@@ -136,10 +145,13 @@ impl Search<'_> {
         let entries = &mut self.sums[sum].entries;
         let gone = entries.swap_remove(at);
         let factors = &self.terms[gone.term as usize].factors;
-        gone.item.offers(factors, gone.term, |key, _, times| self.market.take_by_key(key, [times; 2]));
+        let mut alone = self.offered[gone.row as usize..gone.pairs as usize].iter();
+        gone.item.offers(factors, gone.term, |offer| {
+            alone.next().into_iter().for_each(|known| self.market.take(known.number(), offer.saved));
+        });
         for other in entries.iter() {
             let (older, newer) = if gone.birth < other.birth { (&gone, other) } else { (other, &gone) };
-            let offered = self.offered[(newer.row + older.birth) as usize];
+            let offered = self.offered[(newer.pairs + older.birth) as usize];
             let (first, second) = if offered.ordered() { (older, newer) } else { (newer, older) };
             let pair = Pair::again(&first.item, &second.item, self.market.first(offered.number()));
             self.market.take(offered.number(), pair.saved());

@@ -1,8 +1,8 @@
 //! The market of divisors: what each would save over all sums, and which saves most.
 //!
 //! There are hundreds of thousands of divisors and most are seen once. So they stand one after another as they are
-//! seen, and what is looked up all over memory is only a table of eight bytes each. Keys are hashes already, and
-//! there is no random seed: same input, same program.
+//! seen, and what is looked up all over memory is only a table of eight bytes each, for many divisors at once: memory
+//! takes as long for one answer as for ten. Keys are hashes already, and there is no random seed: same input, same program.
 
 use super::Id;
 use std::cmp::Reverse;
@@ -19,12 +19,22 @@ pub enum Origin {
 /// A divisor, by the order in which they were first seen.
 pub type Number = u32;
 
+/// An occurrence of a divisor.
+pub struct Offer {
+    pub key: u64,
+    /// Operations that a definition costs, with the first or the second part's coefficient 1.
+    pub cost: [i16; 2],
+    /// Factors of a pair's first part.
+    pub first: u16,
+    /// What it saves to replace it, for either choice of the coefficient that is 1.
+    pub saved: [i16; 2],
+    pub origin: Origin,
+}
+
 struct Listing {
     key: u64,
-    origin: Origin,
-    /// Operations that a definition costs, with the first or the second part's coefficient 1.
-    cost: [i32; 2],
-    /// Factors of a pair's first part.
+    /// See [`Offer`].
+    cost: [i16; 2],
     first: u16,
     /// What its occurrences save in all, for either choice of the coefficient that is 1.
     saved: [i32; 2],
@@ -37,7 +47,7 @@ struct Listing {
 impl Listing {
     /// Operations saved if all occurrences are replaced, less what the divisor costs.
     fn gain(&self) -> i32 {
-        let with = |unit: usize| self.saved[unit] - self.cost[unit];
+        let with = |unit: usize| self.saved[unit] - i32::from(self.cost[unit]);
         with(0).max(with(1)) - self.overcount
     }
 }
@@ -83,6 +93,7 @@ impl Level {
 /// All divisors that the sums offer.
 pub struct Market {
     listings: Vec<Listing>,
+    origins: Vec<Origin>,
     /// Open addressing: half a key and the divisor's number; the length is a power of two.
     table: Vec<(u32, Number)>,
     /// The divisors of each gain. Gains may be out of date: too high, never too low.
@@ -97,7 +108,8 @@ impl Market {
     /// A market with room for so many divisors.
     pub fn new(room: usize) -> Market {
         let table = vec![(0, VACANT); (2 * room).next_power_of_two().max(64)];
-        Market { listings: Vec::with_capacity(room), table, queue: Vec::new(), open: false }
+        let (listings, origins) = (Vec::with_capacity(room), Vec::with_capacity(room));
+        Market { listings, origins, table, queue: Vec::new(), open: false }
     }
 
     /// The place of `key` or where it belongs.
@@ -129,42 +141,49 @@ impl Market {
         (number != VACANT).then_some(number)
     }
 
-    /// Adds an occurrence that saves so much. `cost` tells what a definition costs and the factors of its first part.
-    #[inline]
-    pub fn add(&mut self, key: u64, saved: [i32; 2], origin: Origin, cost: impl FnOnce() -> ([i32; 2], u16)) -> Number {
-        let at = self.place(key);
-        let mut number = self.table[at].1;
-        if number == VACANT {
-            number = self.listings.len() as Number;
-            self.table[at] = ((key >> 32) as u32, number);
-            let (cost, first) = cost();
-            self.listings.push(Listing { key, origin, cost, first, saved, overcount: 0, queued: 0 });
+    /// Adds occurrences. `numbers` become those of their divisors.
+    pub fn add(&mut self, offers: &[Offer], numbers: &mut Vec<Number>) {
+        let mask = self.table.len() - 1;
+        let likely = |offer: &Offer| {
+            let (half, number) = self.table[offer.key as usize & mask];
+            if half == (offer.key >> 32) as u32 { number } else { VACANT }
+        };
+        numbers.clear();
+        numbers.extend(offers.iter().map(likely));
+        for (offer, number) in offers.iter().zip(numbers) {
+            if self.listings.get(*number as usize).is_none_or(|likely| likely.key != offer.key) {
+                *number = self.number(offer);
+            }
+            let listing = &mut self.listings[*number as usize];
+            listing.saved[0] += i32::from(offer.saved[0]);
+            listing.saved[1] += i32::from(offer.saved[1]);
+            if self.open {
+                self.queue(*number);
+            }
+        }
+    }
+
+    /// The number of an offered divisor, which is listed if it is new.
+    fn number(&mut self, offer: &Offer) -> Number {
+        let at = self.place(offer.key);
+        let Offer { key, cost, first, origin, .. } = *offer;
+        if self.table[at].1 == VACANT {
+            self.table[at] = ((key >> 32) as u32, self.listings.len() as Number);
+            self.listings.push(Listing { key, cost, first, saved: [0; 2], overcount: 0, queued: 0 });
+            self.origins.push(origin);
             if 2 * self.listings.len() > self.table.len() {
                 self.grow();
             }
-        } else {
-            let listing = &mut self.listings[number as usize];
-            listing.saved[0] += saved[0];
-            listing.saved[1] += saved[1];
+            return self.listings.len() as Number - 1;
         }
-        if self.open {
-            self.queue(number);
-        }
-        number
+        self.table[at].1
     }
 
     /// Takes an occurrence back.
-    pub fn take(&mut self, number: Number, saved: [i32; 2]) {
+    pub fn take(&mut self, number: Number, saved: [i16; 2]) {
         let listing = &mut self.listings[number as usize];
-        listing.saved[0] -= saved[0];
-        listing.saved[1] -= saved[1];
-    }
-
-    /// Takes an occurrence back of which only the key is known.
-    pub fn take_by_key(&mut self, key: u64, saved: [i32; 2]) {
-        if let Some(number) = self.find(key) {
-            self.take(number, saved);
-        }
+        listing.saved[0] -= i32::from(saved[0]);
+        listing.saved[1] -= i32::from(saved[1]);
     }
 
     pub fn open(&mut self) {
@@ -197,7 +216,7 @@ impl Market {
             if gain == listing.queued {
                 listing.queued = 0;
                 if listing.gain() == gain {
-                    return Some(Best { number, origin: listing.origin, gain });
+                    return Some(Best { number, origin: self.origins[number as usize], gain });
                 }
                 self.queue(number);
             }
