@@ -196,7 +196,7 @@ impl<'a> Pair<'a> {
     /// What two terms offer, given with their numbers: a pair in which either comes first.
     #[inline]
     pub fn offer(older: (&Item, u32), newer: (&Item, u32), shared: Shared) -> Offer {
-        let [h1, h2] = [older, newer].map(|(item, _)| item.hash.wrapping_sub(shared.hash));
+        let (h1, h2) = (older.0.hash.wrapping_sub(shared.hash), newer.0.hash.wrapping_sub(shared.hash));
         let ordered = h1 <= h2;
         let (first, second, h1, h2) = if ordered { (older, newer, h1, h2) } else { (newer, older, h2, h1) };
         let pair = Pair { first: first.0, second: second.0, shared: shared.count };
@@ -214,17 +214,17 @@ impl<'a> Pair<'a> {
 
     /// Operations that a definition costs, with the first or the second part's coefficient 1, and the first part's factors.
     fn definition(&self, scaled: bool) -> ([i16; 2], u16) {
-        let [n1, n2] = [self.first, self.second].map(|item| item.length - self.shared);
-        let products = n1.saturating_sub(1) + n2.saturating_sub(1) + 1;
-        let scale = |factors: u16| u16::from(factors > 0 && scaled);
-        ([n2, n1].map(|factors| (products + scale(factors)) as i16), n1)
+        let (n1, n2) = (self.first.length - self.shared, self.second.length - self.shared);
+        let products = (n1.saturating_sub(1) + n2.saturating_sub(1) + 1) as i16;
+        let scale = |factors: u16| i16::from(factors > 0 && scaled);
+        ([products + scale(n2), products + scale(n1)], n1)
     }
 
     /// Operations that it saves to replace it, with the first or the second part's coefficient 1.
     #[inline]
     pub fn saved(&self) -> [i16; 2] {
         let saved = (self.first.cost + self.second.cost + 1 - self.shared) as i16;
-        [self.first, self.second].map(|item| saved - i16::from(item.scaled))
+        [saved - i16::from(self.first.scaled), saved - i16::from(self.second.scaled)]
     }
 }
 

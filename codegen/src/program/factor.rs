@@ -115,10 +115,10 @@ impl Search<'_> {
         item.offers(&factors, term, |offer| self.offers.push(offer));
         let alone = self.offers.len();
         set_hashes(&mut self.hashes, &factors);
-        for other in entries.iter() {
+        self.offers.extend(entries.iter().map(|other| {
             let shared = item.shared(&factors, &self.hashes, &other.item, &self.terms[other.term as usize].factors);
-            self.offers.push(Pair::offer((&other.item, other.term), (&item, term), shared));
-        }
+            Pair::offer((&other.item, other.term), (&item, term), shared)
+        }));
         reset_hashes(&mut self.hashes, &factors);
         self.market.add(&self.offers, &mut self.numbers);
         let row = self.offered.len();
