@@ -3,7 +3,7 @@
 use super::floating;
 use super::kernel::Kernel;
 use super::model::Model;
-use super::stance::Stance;
+use super::turn::Turn;
 use crate::expr::Poly;
 
 /// An equation: its left-hand side as LaTeX, its right-hand side, and what it is.
@@ -45,9 +45,8 @@ pub fn closed_forms(model: &mut Model) -> Vec<Section> {
         sections.push(section(&format!("Foot of leg {i} (eq. 2--4)"), foot.into_iter()));
     }
     for leg in 0..2 {
-        let stance = Stance::new(model, leg);
-        let terms =
-            [(r"f_1", stance.f1), (r"f_2", stance.f2), (r"c", stance.c), (r"\dot\sigma", stance.gravity_moment)];
+        let turn = Turn::new(model, leg);
+        let terms = [(r"f_1", turn.f1), (r"f_2", turn.f2), (r"c", turn.c), (r"\dot\sigma", turn.gravity_moment)];
         let title = format!(r"Support on leg {}: $\sigma = f_1\dot\beta + f_2$ (eq. 8, 9)", leg + 1);
         sections.push(section(&title, terms.into_iter().map(|(left, p)| (left.to_string(), p))));
     }

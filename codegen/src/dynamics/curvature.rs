@@ -9,7 +9,7 @@ use super::kernel::Kernel;
 use super::kinematics::{Vec3, add, cross, dot, subtract};
 use super::model::{Model, Origin, scaled};
 use super::solve::Factors;
-use super::stance::Stance;
+use super::turn::Turn;
 use crate::expr::{Poly, Var};
 use crate::spec::Rotation;
 use std::collections::BTreeMap;
@@ -80,12 +80,12 @@ impl Instant {
         let n = symbols(model, "n", model.mechanism.joints.len() + 1);
         let phi = symbols(model, "phi", model.mechanism.positions());
         let others = symbols(model, "w", 6);
-        let stance = Stance::new(model, leg);
+        let turn = Turn::new(model, leg);
         let mut sum = virtual_power(model, leg, &n, &phi);
         let swing = subtract(&model.foot(1 - leg), &model.foot(leg));
         let swing_rate = model.rate(&swing);
         let platform = model.foot(leg).map(|x| -&x);
-        let terms = [&stance.sigma, &stance.gravity_moment, &swing[1], &platform[0], &swing_rate[1], &platform[1]];
+        let terms = [&turn.sigma, &turn.gravity_moment, &swing[1], &platform[0], &swing_rate[1], &platform[1]];
         for (weight, term) in others.iter().zip(terms) {
             sum += &(&Poly::from(*weight) * term);
         }

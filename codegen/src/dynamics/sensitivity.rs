@@ -7,7 +7,7 @@ use super::curvature::{Instant, Landing};
 use super::kernel::Kernel;
 use super::lumps::Lumps;
 use super::model::Model;
-use super::stance::Stance;
+use super::turn::Turn;
 use crate::expr::{Poly, Var};
 use std::collections::BTreeMap;
 
@@ -63,9 +63,9 @@ fn instant(model: &mut Model, leg: usize) -> Weighted {
 
 /// f1, f2 and c one by one.
 fn terms(model: &mut Model, leg: usize) -> Weighted {
-    let stance = Stance::new(model, leg);
+    let turn = Turn::new(model, leg);
     let mut sum = Poly::zero();
-    let weights: Vec<Var> = [&stance.f1, &stance.f2, &stance.c]
+    let weights: Vec<Var> = [&turn.f1, &turn.f2, &turn.c]
         .into_iter()
         .enumerate()
         .map(|(k, term)| {

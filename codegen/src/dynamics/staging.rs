@@ -7,7 +7,7 @@
 
 use super::kernel::Kernel;
 use super::model::Model;
-use super::stance::Stance;
+use super::turn::Turn;
 use crate::expr::{Poly, Var};
 
 /// Collects early expressions and hands out a symbol for each.
@@ -50,11 +50,11 @@ impl Early {
 }
 
 pub fn kernels(model: &mut Model, leg: usize) -> Vec<Kernel> {
-    let stance = Stance::new(model, leg);
+    let turn = Turn::new(model, leg);
     let beta = model.unactuated(0);
     let (prescribed, rates) = (model.prescribed(0), model.prescribed(1));
     let mut early = Early { symbols: Vec::new(), values: Vec::new() };
-    let terms = [&stance.f1, &stance.f2, &stance.gravity_moment];
+    let terms = [&turn.f1, &turn.f2, &turn.gravity_moment];
     let late: Vec<Poly> = terms.iter().map(|p| early.stage(model, p)).collect();
     let by_beta: Vec<Poly> = late.iter().map(|p| model.ring.derivative(p, beta)).collect();
     let mut gradient = |p: &Poly, by: &[Var]| -> Vec<Poly> {
@@ -65,10 +65,10 @@ pub fn kernels(model: &mut Model, leg: usize) -> Vec<Kernel> {
             })
             .collect()
     };
-    let f1_q = gradient(&stance.f1, &prescribed);
-    let f2_q = gradient(&stance.f2, &prescribed);
-    let f2_qd = gradient(&stance.f2, &rates);
-    let moment_q = gradient(&stance.gravity_moment, &prescribed);
+    let f1_q = gradient(&turn.f1, &prescribed);
+    let f2_q = gradient(&turn.f2, &prescribed);
+    let f2_qd = gradient(&turn.f2, &rates);
+    let moment_q = gradient(&turn.gravity_moment, &prescribed);
     let name = |what: &str| format!("{what}{}", leg + 1);
     vec![
         Kernel::new(

@@ -8,6 +8,7 @@ use super::kernel::Kernel;
 use super::kinematics::subtract;
 use super::model::{Model, Origin};
 use super::solve::Factors;
+use super::turn::Turn;
 use crate::expr::{Poly, Var};
 use crate::spec::Rotation;
 use std::collections::BTreeMap;
@@ -22,45 +23,25 @@ pub struct Stance {
     pub bias: Vec<Poly>,
     /// Reaction at the stance foot, N.
     pub reaction: Vec<Poly>,
-    /// σ = f1 β̇ + f2 (eq. 8).
-    pub sigma: Poly,
-    pub f1: Poly,
-    pub f2: Poly,
-    /// Moment of gravity about the stance foot: σ̇ (eq. 9).
-    pub gravity_moment: Poly,
-    /// Lever arm c (eq. 9).
-    pub c: Poly,
-    /// Moment balance of the whole robot about the stance foot: zero in every motion (eq. 10).
-    pub balance: Poly,
+    pub turn: Turn,
 }
 
 impl Stance {
     pub fn new(model: &mut Model, leg: usize) -> Stance {
         let origin = Origin::Foot(leg);
         let q = model.coordinates.q.clone();
-        let (qd, qdd) = (model.q(1), model.q(2));
+        let qdd = model.q(2);
         let forces = model.generalized_forces(origin, &q);
-        // The whole robot turning about the foot: the platform's rotation where it has one.
-        let (sigma, balance) = match model.mechanism.rotation {
-            Rotation::None => model.level_turn(origin),
-            _ => (model.momenta(origin, &q[q.len() - 1..]).remove(0), forces[q.len() - 1].clone()),
-        };
         let inertia = model.jacobian(&forces, &qdd);
         let bias = forces.iter().map(|f| model.without(f, &qdd)).collect();
-        let beta_rate = model.unactuated(1);
-        let f1 = model.ring.derivative(&sigma, beta_rate);
-        let f2 = model.without(&sigma, &[beta_rate]);
-        let still: Vec<Var> = qd.iter().chain(&qdd).copied().collect();
-        let gravity_moment = -&model.without(&balance, &still);
-        let com = model.centre_of_mass(origin);
-        let c = if model.mechanism.rotation == Rotation::Roll { com[2].clone() } else { com[0].clone() };
+        let turn = Turn::new(model, leg);
         // Change of linear momentum, less the weight.
         let moment = model.first_moment(origin);
         let momentum = model.rate(&moment);
         let mut force = model.rate(&momentum);
         force[1] += &(&model.quantities.total_mass() * &model.quantities.gravity);
         let reaction = model.components(&force);
-        Stance { forces, inertia, bias, reaction, sigma, f1, f2, gravity_moment, c, balance }
+        Stance { forces, inertia, bias, reaction, turn }
     }
 }
 
@@ -85,11 +66,11 @@ pub fn kernels(model: &mut Model, leg: usize) -> Vec<Kernel> {
         Kernel::new(name("momentum_terms"), "Angular momentum about the stance foot S: σ = f1 β̇ + f2 (eq. 8), σ̇ (eq. 9) and its lever arm c.")
             .input("q", q.clone())
             .input("qd", qd.clone())
-            .scalar("f1", stance.f1.clone(), "f1(q), kg·m²")
-            .scalar("f2", stance.f2.clone(), "f2(q, Q̇), kg·m²/s")
-            .scalar("sigma", stance.sigma.clone(), "σ, kg·m²/s")
-            .scalar("c", stance.c.clone(), "horizontal distance from S to the mass centre, m")
-            .scalar("sigmadot", stance.gravity_moment.clone(), "moment of gravity about S, N·m"),
+            .scalar("f1", stance.turn.f1.clone(), "f1(q), kg·m²")
+            .scalar("f2", stance.turn.f2.clone(), "f2(q, Q̇), kg·m²/s")
+            .scalar("sigma", stance.turn.sigma.clone(), "σ, kg·m²/s")
+            .scalar("c", stance.turn.c.clone(), "horizontal distance from S to the mass centre, m")
+            .scalar("sigmadot", stance.turn.gravity_moment.clone(), "moment of gravity about S, N·m"),
         Kernel::new(name("reduced"), "Reduced model of eq. 6: the rows of Aq q̈ + Hq are the torques of the joints and, where the platform turns, 0.")
             .input("q", q.clone())
             .input("qd", qd.clone())
@@ -131,11 +112,11 @@ pub fn kernels(model: &mut Model, leg: usize) -> Vec<Kernel> {
 fn momentum(model: &mut Model, stance: &Stance, leg: usize) -> Kernel {
     let (q, qd) = (model.q(0), model.q(1));
     let by: Vec<Var> = q.iter().chain(&qd).copied().collect();
-    let gradient = model.jacobian(std::slice::from_ref(&stance.sigma), &by).remove(0);
+    let gradient = model.jacobian(std::slice::from_ref(&stance.turn.sigma), &by).remove(0);
     Kernel::new(format!("momentum{}", leg + 1), "σ about the stance foot (eq. 8) and its gradient in (q, q̇).")
         .input("q", q)
         .input("qd", qd)
-        .scalar("sigma", stance.sigma.clone(), "σ, kg·m²/s")
+        .scalar("sigma", stance.turn.sigma.clone(), "σ, kg·m²/s")
         .vector("sigma_w", gradient, "∂σ/∂(q, q̇)")
 }
 
@@ -177,7 +158,7 @@ fn forward(model: &mut Model, stance: &Stance, leg: usize, platform: &[Poly]) ->
 /// Whether a level platform means that the torques on it cancel (eq. 1): so it does where both hips lie
 /// at its mass centre and rotors weigh nothing. Then the balance is the sum of those joints' rows.
 fn torques_cancel(model: &Model, stance: &Stance) -> bool {
-    let mut rest = stance.balance.clone();
+    let mut rest = stance.turn.balance.clone();
     for (joint, force) in stance.forces.iter().enumerate() {
         if model.mechanism.hangs_on_platform(joint) {
             rest = &rest - force;
@@ -192,8 +173,8 @@ fn keep_level(model: &mut Model, stance: &Stance, factors: &Factors, torque_free
     unit[model.mechanism.unactuated] = Poly::constant(1.0);
     let response = factors.solve(&mut model.ring, &unit);
     let accelerations = model.q(2);
-    let row = model.jacobian(std::slice::from_ref(&stance.balance), &accelerations).remove(0);
-    let mut rest = model.without(&stance.balance, &accelerations);
+    let row = model.jacobian(std::slice::from_ref(&stance.turn.balance), &accelerations).remove(0);
+    let mut rest = model.without(&stance.turn.balance, &accelerations);
     let mut share = Poly::zero();
     for ((b, y), w) in row.iter().zip(torque_free).zip(&response) {
         rest += &(b * y);
@@ -208,9 +189,9 @@ fn keep_level(model: &mut Model, stance: &Stance, factors: &Factors, torque_free
 /// β̈ as a bound atom (eq. 10): the balance is linear in it.
 fn free_acceleration(model: &mut Model, stance: &Stance) -> Poly {
     let beta = model.unactuated(2);
-    let rest = model.without(&stance.balance, &[beta]);
+    let rest = model.without(&stance.turn.balance, &[beta]);
     let rest = model.ring.bind(rest);
-    let f1 = model.ring.bind(stance.f1.clone());
+    let f1 = model.ring.bind(stance.turn.f1.clone());
     let over_f1 = model.ring.reciprocal(f1);
     model.ring.bind(-&(&rest * &over_f1))
 }
@@ -251,7 +232,7 @@ fn inverse_with_jacobian(model: &mut Model, stance: &Stance, leg: usize) -> Kern
     let map = BTreeMap::from([(model.unactuated(2), beta.clone())]);
     let joints = model.mechanism.joints.len();
     let outputs: Vec<Poly> =
-        stance.forces[..joints].iter().chain(&stance.reaction).chain([&stance.balance]).cloned().collect();
+        stance.forces[..joints].iter().chain(&stance.reaction).chain([&stance.turn.balance]).cloned().collect();
     let by: Vec<Var> = [model.q(0), model.q(1), model.q(2)].concat();
     let jacobian: Vec<Vec<Poly>> = model
         .jacobian(&outputs, &by)

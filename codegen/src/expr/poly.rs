@@ -63,6 +63,11 @@ pub struct Poly {
 pub struct Terms(Vec<(Monomial, f64)>);
 
 impl Terms {
+    /// None yet, with room for so many.
+    pub fn with_capacity(room: usize) -> Terms {
+        Terms(Vec::with_capacity(room))
+    }
+
     /// Adds `coefficient · monomial`.
     pub fn add(&mut self, monomial: Monomial, coefficient: f64) {
         for law in &OF_A_TERM {
@@ -115,6 +120,14 @@ impl Poly {
         match self.terms.len() {
             0 => Some(0.0),
             1 => self.terms.first().filter(|(m, _)| m.is_empty()).map(|(_, c)| *c),
+            _ => None,
+        }
+    }
+
+    /// Its only term, if it has one.
+    pub fn as_term(&self) -> Option<(&Monomial, f64)> {
+        match &self.terms[..] {
+            [(monomial, coefficient)] => Some((monomial, *coefficient)),
             _ => None,
         }
     }
@@ -269,7 +282,7 @@ impl Mul for &Poly {
         if let Some(factor) = rhs.as_constant() {
             return self.scaled(factor);
         }
-        let mut product = Terms::default();
+        let mut product = Terms::with_capacity(self.len() * rhs.len());
         for (m, c) in self.terms() {
             for (n, d) in rhs.terms() {
                 product.add(times(m, n), c * d);

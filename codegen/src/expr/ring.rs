@@ -5,6 +5,7 @@
 
 use super::laws::OF_SUMS_OF_ANGLES;
 use super::poly::{Monomial, Poly, Terms, Var, times};
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Mutex;
 
@@ -226,29 +227,36 @@ impl Ring {
 
     /// Replaces atoms by expressions. Sums of symbols (rates) are rebuilt from their replaced parts.
     pub fn substitute(&mut self, p: &Poly, map: &BTreeMap<Var, Poly>) -> Poly {
-        let mut result = Terms::default();
-        for (m, c) in p.terms() {
-            let (mut kept, mut replaced) = (Monomial::new(), Vec::new());
+        let mut result = Terms::with_capacity(p.len());
+        for (m, mut c) in p.terms() {
+            let (mut kept, mut terms, mut sums) = (Monomial::new(), Monomial::new(), Vec::new());
             for &factor in m {
                 match self.substitute_atom(factor, map) {
-                    Some(replacement) => replaced.push(replacement),
                     None => kept.push(factor),
+                    Some(replacement) => match replacement.as_term() {
+                        Some((monomial, coefficient)) => {
+                            terms = times(&terms, monomial);
+                            c *= coefficient;
+                        }
+                        None => sums.push(replacement),
+                    },
                 }
             }
-            if replaced.is_empty() {
+            let kept = if terms.is_empty() { kept } else { times(&kept, &terms) };
+            if sums.is_empty() {
                 result.add(kept, c);
                 continue;
             }
-            let product = replaced.iter().fold(Poly::term(kept, c), |product, r| &product * r);
+            let product = sums.iter().fold(Poly::term(kept, c), |product, sum| &product * sum);
             product.terms().for_each(|(m, c)| result.add(Monomial::from_slice(m), c));
         }
         result.collected()
     }
 
     /// What takes the place of an atom, if anything does.
-    fn substitute_atom(&mut self, atom: Var, map: &BTreeMap<Var, Poly>) -> Option<Poly> {
+    fn substitute_atom<'m>(&mut self, atom: Var, map: &'m BTreeMap<Var, Poly>) -> Option<Cow<'m, Poly>> {
         if let Some(replacement) = map.get(&atom) {
-            return Some(replacement.clone());
+            return Some(Cow::Borrowed(replacement));
         }
         if atom.is_sin() || atom.is_cos() {
             return None;
@@ -262,9 +270,9 @@ impl Ring {
         // A sum of symbols with some of them dropped is again a sum of symbols.
         if replaced.terms().all(|(m, c)| m.len() == 1 && c == 1.0) {
             let symbols: Vec<Var> = replaced.terms().map(|(m, _)| m[0]).collect();
-            return Some(self.sum(&symbols));
+            return Some(Cow::Owned(self.sum(&symbols)));
         }
-        Some(self.bind(replaced))
+        Some(Cow::Owned(self.bind(replaced)))
     }
 
     /// Splits every angle that contains `late`: `sin(late + rest)` becomes a sum of products.
@@ -369,7 +377,7 @@ impl Ring {
 
 /// (x y)' = x' y + x y': `slope` hands out the terms of an atom's derivative.
 fn product_rule(p: &Poly, mut slope: impl FnMut(Var, &mut dyn FnMut(&[Var], f64))) -> Poly {
-    let mut result = Terms::default();
+    let mut result = Terms::with_capacity(p.len());
     for (m, c) in p.terms() {
         for (position, &factor) in m.iter().enumerate() {
             slope(factor, &mut |inner, d| {
