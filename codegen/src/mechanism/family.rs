@@ -26,6 +26,16 @@ impl Family {
     /// # Errors
     /// If the mechanism is not affine in them: where a virtual leg or a locked joint makes one body of several.
     pub fn new(robot: &Robot, gait: &Gait, chosen: Vec<Parameter>) -> Result<Family, String> {
+        let not_affine = || {
+            format!(
+                "the {} joins links with parameters of their own into one body or leg: a family needs legs that move as one to \
+                 share their links, and no locked joints between links whose numbers are parameters",
+                gait.name
+            )
+        };
+        if !shares_links(robot, gait) {
+            return Err(not_affine());
+        }
         let mechanism = |robot: &Robot| -> Result<Mechanism, String> {
             let robot = robot.locked(&gait.locked).map_err(|t| format!("`{}` is tilted", t.joint))?;
             Ok(Mechanism::new(&robot, gait))
@@ -44,19 +54,7 @@ impl Family {
         // Another robot: every number changes by a share of its own.
         let value = |k: usize| family.parameters[k].value * (1.0 + 0.1 / (k + 2) as f64);
         let changed = with(robot, |name| family.parameters.iter().position(|p| p.name == name).map(value));
-        if family.shares_links(robot, gait) && family.gives(&mechanism(&changed)?.numbers(), value) {
-            return Ok(family);
-        }
-        Err(format!(
-            "the {} joins links with parameters of their own into one body or leg: a family needs legs that move as one to \
-             share their links, and no locked joints between links whose numbers are parameters",
-            gait.name
-        ))
-    }
-
-    fn shares_links(&self, robot: &Robot, gait: &Gait) -> bool {
-        let links = |leg: &usize| robot.legs[*leg].chain.iter().map(|segment| segment.link.name.as_str());
-        gait.virtual_legs.iter().all(|legs| legs.iter().all(|leg| links(leg).eq(links(&legs[0]))))
+        if family.gives(&mechanism(&changed)?.numbers(), value) { Ok(family) } else { Err(not_affine()) }
     }
 
     /// Whether these are the mechanism's numbers for the parameters' values.
@@ -64,4 +62,10 @@ impl Family {
         let affine = |i: usize| self.slopes.iter().enumerate().fold(self.base[i], |sum, (k, s)| sum + s[i] * value(k));
         numbers.iter().enumerate().all(|(i, number)| (affine(i) - number).abs() <= 1e-9 * number.abs().max(1e-6))
     }
+}
+
+/// Whether legs that move as one are made of the same links.
+fn shares_links(robot: &Robot, gait: &Gait) -> bool {
+    let links = |leg: &usize| robot.legs[*leg].chain.iter().map(|segment| segment.link.name.as_str());
+    gait.virtual_legs.iter().all(|legs| legs.iter().all(|leg| links(leg).eq(links(&legs[0]))))
 }

@@ -37,22 +37,25 @@ pub fn levers(robot: &Robot, gait: &Gait) -> Vec<Lever> {
             named.push((name, place.unit, place.value()));
         }
     });
-    let numbers = |lever: usize, value: f64| {
-        let (mut robot, mut gait) = (robot.clone(), gait.clone());
-        let mut at = at.iter();
-        places(&mut robot, &mut gait.limits, |place| {
-            if at.next() == Some(&lever) {
-                place.set(value);
-            }
-        });
-        let robot = robot.locked(&gait.locked).ok()?;
-        let mechanism = Mechanism::new(&robot, &gait);
-        Some([mechanism.numbers(), mechanism.limiting_numbers()].concat())
-    };
+    let (mut robot, mut gait) = (robot.clone(), gait.clone());
     let lever = |(k, (name, unit, value)): (usize, (String, &'static str, f64))| {
+        let set = |robot: &mut Robot, gait: &mut Gait, value: f64| {
+            let mut at = at.iter();
+            places(robot, &mut gait.limits, |place| {
+                if at.next() == Some(&k) {
+                    place.set(value);
+                }
+            });
+        };
+        let mut numbers = |changed: f64| {
+            set(&mut robot, &mut gait, changed);
+            let mechanism = robot.locked(&gait.locked).map(|robot| Mechanism::new(&robot, &gait));
+            set(&mut robot, &mut gait, value);
+            mechanism.ok().map(|m| [m.numbers(), m.limiting_numbers()].concat())
+        };
         let size = if value == 0.0 { 1.0 } else { value.abs() };
-        let difference = |h: f64| -> Option<Vec<f64>> {
-            let (above, below) = (numbers(k, value + h)?, numbers(k, value - h)?);
+        let mut difference = |h: f64| -> Option<Vec<f64>> {
+            let (above, below) = (numbers(value + h)?, numbers(value - h)?);
             Some(above.iter().zip(&below).map(|(a, b)| (a - b) / (2.0 * h)).collect())
         };
         let (wide, narrow) = (difference(size * STEP)?, difference(size * STEP / 2.0)?);

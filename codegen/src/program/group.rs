@@ -4,7 +4,7 @@
 //! column of a matrix repeat parts of each other, and a Jacobian repeats its function. Greedy divisors
 //! see two terms at a time and may cut such a common part differently in each place.
 
-use super::divisor::{Factors, exact, rounded};
+use super::divisor::{Factors, exact, hash_of, rounded};
 use super::{Id, Node, Program, Sum, Term};
 use std::collections::BTreeMap;
 
@@ -22,21 +22,23 @@ pub struct Groups(Vec<(Signature, Vec<Member>)>);
 
 impl Groups {
     pub fn new(program: &Program) -> Groups {
-        let of_sum = |(s, sum)| -> Vec<(usize, usize, &Term)> {
-            let sum: &Sum = sum;
-            sum.iter().enumerate().map(|(i, t)| (s, i, t)).collect()
+        let of_sum = |(s, sum): (usize, &Sum)| -> Vec<(u64, usize, usize)> {
+            sum.iter().enumerate().map(|(i, t)| (hash_of(&t.factors), s, i)).collect()
         };
-        let mut terms: Vec<(usize, usize, &Term)> = program.sums.iter().enumerate().flat_map(of_sum).collect();
-        terms.sort_by(|(s, _, a), (r, _, b)| a.factors.cmp(&b.factors).then(s.cmp(r)));
+        // Where like terms are: those with equal hashes, sum by sum.
+        let mut terms: Vec<(u64, usize, usize)> = program.sums.iter().enumerate().flat_map(of_sum).collect();
+        terms.sort_unstable();
+        let term = |(_, s, i): &(u64, usize, usize)| &program.sums[*s][*i];
         let mut groups: BTreeMap<Signature, Vec<Member>> = BTreeMap::new();
-        let same = |a: &(usize, usize, &Term), b: &(usize, usize, &Term)| a.2.factors == b.2.factors;
-        for places in terms.chunk_by(same).filter(|places| places.len() > 1) {
-            let first = places[0].2;
-            let ratio = |t: &Term| rounded(t.coefficient / first.coefficient);
-            let signature = places.iter().map(|(s, _, t)| (*s, ratio(t))).collect();
-            let places = places.iter().map(|(_, i, t)| (t.coefficient, *i)).collect();
+        let alike = terms.chunk_by(|a, b| a.0 == b.0 && term(a).factors == term(b).factors);
+        for places in alike.filter(|places| places.len() > 1) {
+            let first = term(&places[0]);
+            let ratio = |at| rounded(term(at).coefficient / first.coefficient);
+            let signature = places.iter().map(|at| (at.1, ratio(at))).collect();
+            let places = places.iter().map(|at| (term(at).coefficient, at.2)).collect();
             groups.entry(signature).or_default().push(Member { factors: Factors::from_slice(&first.factors), places });
         }
+        groups.values_mut().for_each(|members| members.sort_by(|a, b| a.factors.cmp(&b.factors)));
         Groups(groups.into_iter().collect())
     }
 
