@@ -296,7 +296,7 @@ fn for_each_gait<'j>(
 
 /// The files, in order; the first mistake if there is any.
 fn together(jobs: Vec<Job>) -> Result<Vec<Generated>, String> {
-    let made: Vec<_> = jobs.into_par_iter().map(|job| job()).collect();
+    let made: Vec<_> = jobs.into_par_iter().with_max_len(1).map(|job| job()).collect();
     made.into_iter().collect()
 }
 

@@ -23,7 +23,7 @@ pub struct Function<'a> {
 
 /// A function for each kernel, in order.
 pub fn functions<'a>(ring: &'a Ring, kernels: &'a [Kernel]) -> Vec<Function<'a>> {
-    kernels.par_iter().map(|kernel| Function::new(ring, kernel)).collect()
+    kernels.par_iter().with_max_len(1).map(|kernel| Function::new(ring, kernel)).collect()
 }
 
 /// `inverse_jacobian2` → (`inverse_jacobian`, true): leg kernels end in the leg's number.

@@ -6,7 +6,7 @@
 use super::laws::OF_SUMS_OF_ANGLES;
 use super::poly::{Monomial, Poly, Terms, Var, times};
 use std::borrow::Cow;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Mutex;
 
 /// What an atom stands for.
@@ -36,7 +36,7 @@ pub struct Ring {
     /// Memo of sums of symbols (rates of angles), so that each is bound once.
     sums: BTreeMap<Vec<Var>, Var>,
     /// Memo of derivatives of bound atoms.
-    derivatives: Mutex<BTreeMap<(Var, Var), Poly>>,
+    derivatives: Mutex<HashMap<(Var, Var), Poly>>,
 }
 
 impl Ring {

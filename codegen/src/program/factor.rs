@@ -74,7 +74,7 @@ pub fn factor(program: &mut Program) {
         nodes: &mut program.nodes,
         terms: Vec::new(),
         sums: program.sums.iter().map(|s| Sum { entries: Vec::with_capacity(s.len()), births: 0 }).collect(),
-        offered: Vec::with_capacity(pairs),
+        offered: Vec::with_capacity(6 * pairs),
         market: Market::new(pairs),
     };
     for (sum, terms) in program.sums.iter().enumerate() {

@@ -105,10 +105,10 @@ pub struct Market {
 const VACANT: Number = Number::MAX;
 
 impl Market {
-    /// A market with room for so many divisors.
+    /// A market with room for about so many divisors, and as many again that come from rewriting.
     pub fn new(room: usize) -> Market {
-        let table = vec![(0, VACANT); (2 * room).next_power_of_two().max(64)];
-        let (listings, origins) = (Vec::with_capacity(room), Vec::with_capacity(room));
+        let table = vec![(0, VACANT); (room + room / 4).next_power_of_two().max(64)];
+        let (listings, origins) = (Vec::with_capacity(2 * room), Vec::with_capacity(2 * room));
         Market { listings, origins, table, queue: Vec::new(), open: false }
     }
 
@@ -171,7 +171,7 @@ impl Market {
             self.table[at] = ((key >> 32) as u32, self.listings.len() as Number);
             self.listings.push(Listing { key, cost, first, saved: [0; 2], overcount: 0, queued: 0 });
             self.origins.push(origin);
-            if 2 * self.listings.len() > self.table.len() {
+            if 5 * self.listings.len() > 4 * self.table.len() {
                 self.grow();
             }
             return self.listings.len() as Number - 1;
