@@ -1,8 +1,8 @@
 //! The equations of motion of one gait as kernels: named groups of expressions to be evaluated together.
 //!
 //! `floating` holds the model in X = [p, q] (eq. 5), `stance` the one reduced to q by the stance foot
-//! (eq. 6, 10) and `turn` its angular momentum (eq. 8, 9), `impact` the passive impacts (eq. 11, 12), `staging` what of eq. 8 and 9 can be
-//! evaluated before β is known; `whole` is the real robot, which has no gait. All follow Kane's form `Σ m ∂v/∂Ẋ·a + ∂ω/∂Ẋ·(Iω̇ + ω×Iω)`.
+//! (eq. 6, 10), `turn` its angular momentum (eq. 8, 9), `impact` the passive impacts (eq. 11, 12), `staging` what of
+//! eq. 8 and 9 can be evaluated before β is known; `whole` is the real robot, which has no gait. All follow Kane's form `Σ m ∂v/∂Ẋ·a + ∂ω/∂Ẋ·(Iω̇ + ω×Iω)`.
 
 mod closed_forms;
 mod curvature;

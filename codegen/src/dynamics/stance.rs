@@ -1,5 +1,5 @@
-//! Single support on one leg: the model reduced to q by the stance foot at rest (eq. 6), angular
-//! momentum and its rate (eq. 8, 9), β̈ (eq. 10), forward and inverse dynamics.
+//! Single support on one leg: the model reduced to q by the stance foot at rest (eq. 6), with what is known of its
+//! turn (eq. 8, 9), β̈ (eq. 10), forward and inverse dynamics.
 //!
 //! With positions measured from the stance foot, p drops out; its reaction does no work there, so
 //! the generalized forces of q are the torques alone: `Aq q̈ + Hq = Dq Γ`.
