@@ -48,6 +48,10 @@ pub struct Conflict {
 /// optimum a kink tells a step more than is true.
 const SMOOTHING: f64 = 0.1;
 
+/// Largest component of the first step from there, in natural sizes of the variables: kinks are known where they are, and
+/// hardly beyond.
+const CAUTION: f64 = 0.05;
+
 /// Options of the solver for a problem of this kind.
 pub fn options(cycle: &Cycle) -> Options {
     Options {
@@ -91,7 +95,7 @@ impl Task<'_> {
 
     /// Minimizes from the optimum of a neighbouring problem: directly, or as from anywhere if that leads nowhere.
     pub fn follow(&self, start: &[f64], observe: Observer) -> Local {
-        let local = self.polish(start, observe);
+        let local = self.polish(start, f64::INFINITY, observe);
         if matches!(local.status, Status::Optimal | Status::Stopped) {
             return local;
         }
@@ -104,20 +108,23 @@ impl Task<'_> {
 
     /// An approximate optimum of `cycle`, then the optimum.
     fn approach(&self, mut cycle: Cycle, start: &[f64], options: &Options, observe: Observer) -> Local {
+        let mut first_step_limit = f64::INFINITY;
         if self.criterion == Criterion::Energy {
             let d = self.gait.description();
             cycle.smoothing = SMOOTHING * d.total_mass() * d.gravity * self.speed;
+            first_step_limit = CAUTION;
         }
         let solution = sqp::minimize(&mut cycle, start, &rough(options), observe);
-        let local = self.polish(&solution.x, observe);
+        let local = self.polish(&solution.x, first_step_limit, observe);
         Local { iterations: solution.iterations + local.iterations, ..local }
     }
 
     /// The optimum near `start`, with constraints imposed between nodes where they dip.
-    fn polish(&self, start: &[f64], observe: Observer) -> Local {
+    fn polish(&self, start: &[f64], first_step_limit: f64, observe: Observer) -> Local {
         let mut cycle = self.cycle();
         let options = options(&cycle);
-        let mut solution = sqp::minimize(&mut cycle, start, &options, observe);
+        let first = Options { first_step_limit, ..options.clone() };
+        let mut solution = sqp::minimize(&mut cycle, start, &first, observe);
         let mut iterations = solution.iterations;
         let mut violation = f64::INFINITY;
         for _ in 0..ROUNDS {

@@ -17,6 +17,8 @@ pub struct Options {
     pub initial_step: f64,
     /// Largest component of any step, in scaled variables. Infinite: only refused steps limit later ones.
     pub step_limit: f64,
+    /// The same of the first step alone; later ones go as far as those before them went well.
+    pub first_step_limit: f64,
     /// First penalty of the ℓ1 merit function; it grows by itself.
     pub penalty: f64,
     /// Use [`Problem::hessian`](super::Problem::hessian) if the problem provides it.
@@ -38,6 +40,7 @@ impl Default for Options {
             scale_rows: false,
             initial_step: 1.0,
             step_limit: f64::INFINITY,
+            first_step_limit: f64::INFINITY,
             penalty: 1.0,
             exact_hessian: true,
             estimate_multipliers: false,

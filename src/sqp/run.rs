@@ -98,7 +98,7 @@ impl<'a, 'p, P: Problem> Run<'a, 'p, P> {
             d: zeros(),
             promise: Promise::default(),
             kind: Kind::Start,
-            radius: f64::INFINITY,
+            radius: options.first_step_limit,
             elastic: false,
             active: 0,
             lagrangian_model: QuasiNewton::new(n),
