@@ -120,10 +120,9 @@ impl<'a> Linearized<'a> {
         speed: f64,
         motion: &Motion,
     ) -> Result<Linearized<'a>, Undefined> {
-        let mut cycle = Cycle::new(gait, criterion, speed);
-        let theta = cycle.theta(motion);
-        let found = cycle.simulate(&theta).and_then(|()| dips(&cycle)).map_err(|_| Undefined)?;
-        found.impose(&mut cycle);
+        let theta = Cycle::new(gait, criterion, speed).theta(motion);
+        let mut cycle = Cycle::resolving(gait, criterion, speed, &theta).map_err(|_| Undefined)?;
+        dips(&cycle).map_err(|_| Undefined)?.impose(&mut cycle);
         let scale = cycle.scale();
         let multipliers = multipliers(&mut cycle, &theta, scale)?;
         Ok(Linearized { cycle, theta, multipliers })

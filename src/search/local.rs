@@ -119,29 +119,43 @@ impl Task<'_> {
         Local { iterations: solution.iterations + local.iterations, ..local }
     }
 
-    /// The optimum near `start`, with constraints imposed between nodes where they dip.
+    /// The optimum near `start`, on a mesh that resolves it.
     fn polish(&self, start: &[f64], first_step_limit: f64, observe: Observer) -> Local {
         let mut cycle = self.cycle();
-        let options = options(&cycle);
-        let first = Options { first_step_limit, ..options.clone() };
-        let mut solution = sqp::minimize(&mut cycle, start, &first, observe);
-        let mut iterations = solution.iterations;
-        let mut violation = f64::INFINITY;
-        for _ in 0..ROUNDS {
-            let Ok(found) = cycle.simulate(&solution.x).and_then(|()| dips(&cycle)) else { break };
-            violation = found.violation;
-            if !solution.status.is_optimal() || violation <= DENSE {
-                break;
-            }
-            found.impose(&mut cycle);
-            solution = sqp::minimize(&mut cycle, &solution.x, &options, observe);
-            iterations += solution.iterations;
+        let (mut solution, mut violation) = settle(&mut cycle, start, first_step_limit, observe);
+        while solution.status.is_optimal()
+            && let Some(finer) = cycle.finer()
+        {
+            let iterations = solution.iterations;
+            cycle = finer;
+            (solution, violation) = settle(&mut cycle, &solution.x, CAUTION, observe);
+            solution.iterations += iterations;
         }
-        finish(&mut cycle, solution, violation, iterations)
+        finish(&mut cycle, solution, violation)
     }
 }
 
-fn finish(cycle: &mut Cycle, solution: Solution, violation: f64, iterations: usize) -> Local {
+/// The optimum near `start`, with constraints imposed between nodes where they dip; and what violation (scaled) is left there.
+fn settle(cycle: &mut Cycle, start: &[f64], first_step_limit: f64, observe: Observer) -> (Solution, f64) {
+    let options = options(cycle);
+    let first = Options { first_step_limit, ..options.clone() };
+    let mut solution = sqp::minimize(cycle, start, &first, observe);
+    let mut violation = f64::INFINITY;
+    for _ in 0..ROUNDS {
+        let Ok(found) = cycle.simulate(&solution.x).and_then(|()| dips(cycle)) else { break };
+        violation = found.violation;
+        if !solution.status.is_optimal() || violation <= DENSE {
+            break;
+        }
+        found.impose(cycle);
+        let iterations = solution.iterations;
+        solution = sqp::minimize(cycle, &solution.x, &options, observe);
+        solution.iterations += iterations;
+    }
+    (solution, violation)
+}
+
+fn finish(cycle: &mut Cycle, solution: Solution, violation: f64) -> Local {
     // The motion and its labels are those of the last point simulated: make that the solution.
     let defined = cycle.simulate(&solution.x).is_ok();
     let conflicts = if defined { conflicts(cycle, &solution) } else { Vec::new() };
@@ -152,7 +166,7 @@ fn finish(cycle: &mut Cycle, solution: Solution, violation: f64, iterations: usi
         theta: solution.x,
         kkt: solution.kkt,
         violation,
-        iterations,
+        iterations: solution.iterations,
         conflicts,
     }
 }
