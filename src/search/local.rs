@@ -46,7 +46,7 @@ pub struct Conflict {
 
 /// The kinks of |power| are rounded off first, by this share of weight times speed: far from the
 /// optimum a kink tells a step more than is true.
-const SMOOTHING: f64 = 0.08;
+const SMOOTHING: f64 = 0.06;
 
 /// Largest component of the first step from there, in natural sizes of the variables: kinks are known where they are, and
 /// hardly beyond.
