@@ -35,7 +35,7 @@ pub fn elements(d: &Description) -> usize {
 }
 
 /// Elements are halved where that changes β (rad) or β̇ (rad/s) at the end of a half step by more than this,
-const RESOLUTION: f64 = 2e-7;
+const RESOLUTION: f64 = 5e-7;
 /// until there are so many times as many.
 const FINEST: usize = 8;
 

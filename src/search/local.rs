@@ -46,7 +46,7 @@ pub struct Conflict {
 
 /// The kinks of |power| are rounded off first, by this share of weight times speed: far from the
 /// optimum a kink tells a step more than is true.
-const SMOOTHING: f64 = 0.06;
+const SMOOTHING: f64 = 0.08;
 
 /// Largest component of the first step from there, in natural sizes of the variables: kinks are known where they are, and
 /// hardly beyond.
@@ -124,12 +124,15 @@ impl Task<'_> {
         let mut cycle = self.cycle();
         let (mut solution, mut violation) = settle(&mut cycle, start, first_step_limit, observe);
         while solution.status.is_optimal()
-            && let Some(finer) = cycle.finer()
+            && let Some(mut finer) = cycle.finer()
         {
-            let iterations = solution.iterations;
-            cycle = finer;
-            (solution, violation) = settle(&mut cycle, &solution.x, CAUTION, observe);
-            solution.iterations += iterations;
+            let (better, left) = settle(&mut finer, &solution.x, CAUTION, observe);
+            // What does not become an optimum there stays what it is: its receipt tells.
+            solution.iterations += better.iterations;
+            if !better.status.is_optimal() {
+                break;
+            }
+            (solution, violation, cycle) = (Solution { iterations: solution.iterations, ..better }, left, finer);
         }
         finish(&mut cycle, solution, violation)
     }
