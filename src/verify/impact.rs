@@ -7,7 +7,8 @@
 //!
 //! Before it the stance foot was at rest, which gives ṗ⁻ from q̇⁻ (eq. 3).
 
-use super::multibody::{Multibody, Vec3};
+use super::geometry::Vec3;
+use super::multibody::Multibody;
 use super::scalar::Scalar;
 use crate::model::Description;
 

@@ -1,6 +1,6 @@
 //! Single support as a function of t, β and β̇: all that happens at an instant.
 
-use super::multibody::Vec3;
+use super::geometry::{Plane, Vec3};
 use super::numbers::Numbers;
 use super::polynomial::Polynomials;
 use super::scalar::Scalar;
@@ -10,10 +10,27 @@ use crate::motion::HalfStep;
 
 /// The instants of a half step: Q(t) is prescribed, β and β̇ come from outside.
 #[derive(Clone, Debug)]
-pub struct Instants<'a, T = f64> {
-    support: Support<'a, T>,
+pub struct Instants<'a, T: Scalar = f64> {
+    support: Either<'a, T>,
     polynomials: Polynomials<T>,
     leg: usize,
+}
+
+/// Computed in the sagittal plane where all motion is in it, or else in space.
+#[derive(Clone, Debug)]
+enum Either<'a, T: Scalar> {
+    Plane(Support<'a, T, Plane>),
+    Space(Support<'a, T>),
+}
+
+/// What is done with `$support`, in whichever geometry it is.
+macro_rules! either {
+    ($of:expr, $support:ident => $do:expr) => {
+        match $of {
+            Either::Plane($support) => $do,
+            Either::Space($support) => $do,
+        }
+    };
 }
 
 /// All that happens at one instant. Positions and velocities are taken from the stance foot, in world axes.
@@ -53,12 +70,16 @@ impl<T: Scalar> State<T> {
 impl<'a, T: Scalar> Instants<'a, T> {
     /// Of a half step on `leg`, whose lists have a number for every prescribed coordinate.
     pub fn new(description: &'a Description, numbers: Numbers<T>, half_step: &HalfStep<T>, leg: usize) -> Self {
-        let support = Support::with(description, numbers, leg);
+        let support = if Plane::holds(description) {
+            Either::Plane(Support::with(description, numbers, leg))
+        } else {
+            Either::Space(Support::with(description, numbers, leg))
+        };
         Instants { support, polynomials: Polynomials::new(half_step), leg }
     }
 
     pub fn description(&self) -> &'a Description {
-        self.support.multibody.description()
+        either!(&self.support, support => support.multibody.description())
     }
 
     /// On which it stands.
@@ -67,7 +88,7 @@ impl<'a, T: Scalar> Instants<'a, T> {
     }
 
     pub fn numbers(&self) -> &Numbers<T> {
-        self.support.multibody.numbers()
+        either!(&self.support, support => support.multibody.numbers())
     }
 
     /// β̈ by eq. 10 at time `t`; leaves q, q̇ and q̈ in `state`. `None` where f1 vanishes.
@@ -79,23 +100,13 @@ impl<'a, T: Scalar> Instants<'a, T> {
         }
         state.q[description.unactuated] = beta;
         state.qd[description.unactuated] = betad;
-        self.support.accelerate(&state.q, &state.qd, &mut state.qdd)
+        either!(&mut self.support, support => support.accelerate(&state.q, &state.qd, &mut state.qdd))
     }
 
     /// Everything at time `t`, into `state`; returns β̈. `None` where f1 vanishes.
     pub fn at(&mut self, t: T, beta: [T; 2], state: &mut State<T>) -> Option<T> {
         let acceleration = self.accelerate(t, beta, state)?;
-        state.force = self.support.torques(&state.qdd, &mut state.torques);
-        let stance = self.support.multibody.foot(self.leg);
-        let swing = self.support.multibody.foot(1 - self.leg);
-        state.platform = -stance.position;
-        state.swing = swing.position - stance.position;
-        state.swing_velocity = swing.velocity - stance.velocity;
-        if !self.description().lateral {
-            // How deep the hips are does not matter in the plane.
-            state.platform.z = T::zero();
-            state.swing.z = T::zero();
-        }
+        either!(&mut self.support, support => support.complete(state));
         Some(acceleration)
     }
 }

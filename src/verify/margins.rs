@@ -1,8 +1,8 @@
 //! What is left of every limit at an instant (§4.2, §6.1): the inequalities, in numbers of any kind.
 
 use super::constraint::Constraint;
+use super::geometry::Vec3;
 use super::instants::State;
-use super::multibody::Vec3;
 use super::numbers::Numbers;
 use super::scalar::Scalar;
 use super::support::leg_length;

@@ -5,8 +5,8 @@
 //!
 //! 1. Q(t) by divided differences ([`polynomial`], eq. 15);
 //! 2. β(t) by adaptive integration of order 8 ([`integrate`], eq. 20–22) of the balance of all bodies
-//!    about the stance foot ([`support`], eq. 10), from 3-D Newton–Euler dynamics in numbers
-//!    ([`multibody`], eq. 4, 5);
+//!    about the stance foot ([`support`], eq. 10), from Newton–Euler dynamics in numbers
+//!    ([`multibody`], eq. 4, 5), in space or where it suffices in the plane ([`geometry`]);
 //! 3. every constraint of §4.2 and §6.1 on a dense grid (`grid.rs`, [`constraint`]), and both criteria
 //!    (eq. 13, 14) by quadrature that respects changes of sign ([`quadrature`]);
 //! 4. the impacts ([`impact`], eq. 12) and how nearly the cycle closes (`cycle.rs`, eq. 16–19, 23, 24).
@@ -22,6 +22,7 @@ pub mod constraint;
 pub mod cycle;
 pub mod dual;
 mod error;
+pub mod geometry;
 mod grid;
 pub mod impact;
 pub mod instants;

@@ -10,48 +10,46 @@
 //! A is the part linear in Ẍ and H the rest. Everything is 3-D and in world axes (Xf forward, Yf up,
 //! Zf right) with positions from the platform's mass centre; nothing here is symbolic, and nothing is
 //! shared with the generated code but the numbers of the specification. In a gait without z the
-//! motion across the sagittal plane, and so the depth of the hips, is ignored.
+//! motion across the sagittal plane, and so the depth of the hips, is ignored; where nothing turns out
+//! of that plane either, the same can be computed within it ([`Geometry`]).
 
+use super::geometry::{Geometry, Space, Vec3};
 use super::numbers::Numbers;
 use super::scalar::Scalar;
 use crate::model::{Description, Rotation};
-use nalgebra::Vector3;
-
-/// A vector in world axes.
-pub type Vec3<T = f64> = Vector3<T>;
+use num_traits::Zero;
 
 /// A mechanism at one state. The workspace is allocated once; no method allocates.
 #[derive(Clone, Debug)]
-pub struct Multibody<'a, T = f64> {
+pub struct Multibody<'a, T: Scalar = f64, G: Geometry<T> = Space> {
     description: &'a Description,
     numbers: Numbers<T>,
-    frames: Vec<Frame<T>>,
-    coms: Vec<Point<T>>,
+    frames: Vec<Frame<T, G>>,
+    coms: Vec<Point<G::Vector>>,
     /// Body that coordinate k of q turns on its parent (θ: the platform on the world).
     carriers: Vec<usize>,
     /// Whether coordinate k moves body b, at `k * bodies + b`.
     moves: Vec<bool>,
-    feet: [Point<T>; 2],
+    feet: [Point<G::Vector>; 2],
 }
 
 /// A body: where it is and how it moves, relative to the platform's mass centre.
 #[derive(Clone, Copy, Debug)]
-struct Frame<T> {
-    /// The body's axes in the world.
-    axes: [Vec3<T>; 3],
+struct Frame<T: Scalar, G: Geometry<T>> {
+    axes: G::Axes,
     /// Axis of the body's joint.
-    axis: Vec3<T>,
-    spin: Vec3<T>,
-    spin_rate: Vec3<T>,
-    joint: Point<T>,
+    axis: G::Spin,
+    spin: G::Spin,
+    spin_rate: G::Spin,
+    joint: Point<G::Vector>,
 }
 
 /// A point with its motion relative to the platform's mass centre; m, m/s, m/s².
 #[derive(Clone, Copy, Debug)]
-pub struct Point<T = f64> {
-    pub position: Vec3<T>,
-    pub velocity: Vec3<T>,
-    pub acceleration: Vec3<T>,
+pub struct Point<V = Vec3> {
+    pub position: V,
+    pub velocity: V,
+    pub acceleration: V,
 }
 
 impl<'a> Multibody<'a> {
@@ -60,7 +58,7 @@ impl<'a> Multibody<'a> {
     }
 }
 
-impl<'a, T: Scalar> Multibody<'a, T> {
+impl<'a, T: Scalar, G: Geometry<T>> Multibody<'a, T, G> {
     /// The mechanism of `description` with other numbers.
     pub fn with(description: &'a Description, numbers: Numbers<T>) -> Self {
         let count = description.bodies.len();
@@ -130,22 +128,22 @@ impl<'a, T: Scalar> Multibody<'a, T> {
             self.frames[leg.foot_body].locate(arm, foot);
         }
         if !self.description.lateral {
-            self.coms.iter_mut().chain(&mut self.feet).for_each(Point::flatten);
+            self.coms.iter_mut().chain(&mut self.feet).for_each(Point::flatten::<T, G>);
         }
     }
 
     /// The foot of a leg, relative to the platform's mass centre.
-    pub fn foot(&self, leg: usize) -> &Point<T> {
+    pub fn foot(&self, leg: usize) -> &Point<G::Vector> {
         &self.feet[leg]
     }
 
     /// The mass centre of a body, relative to the platform's.
-    pub fn com(&self, body: usize) -> &Point<T> {
+    pub fn com(&self, body: usize) -> &Point<G::Vector> {
         &self.coms[body]
     }
 
     /// Angular velocity of a body, rad/s.
-    pub fn spin(&self, body: usize) -> Vec3<T> {
+    pub fn spin(&self, body: usize) -> G::Spin {
         self.frames[body].spin
     }
 
@@ -155,43 +153,40 @@ impl<'a, T: Scalar> Multibody<'a, T> {
     }
 
     /// Axis of coordinate `k` of q, and where it is.
-    pub fn axis(&self, k: usize) -> (Vec3<T>, Vec3<T>) {
+    pub fn axis(&self, k: usize) -> (G::Spin, G::Vector) {
         let carrier = &self.frames[self.carriers[k]];
         (carrier.axis, carrier.joint.position)
     }
 
     /// Partial velocity in q̇ₖ of the point of a body that is at `position`, m.
-    pub fn partial_velocity(&self, k: usize, body: usize, position: &Vec3<T>) -> Vec3<T> {
+    pub fn partial_velocity(&self, k: usize, body: usize, position: G::Vector) -> G::Vector {
         if !self.moves(k, body) {
-            return Vec3::zeros();
+            return G::Vector::zero();
         }
         let (axis, joint) = self.axis(k);
-        let mut velocity = axis.cross(&(position - joint));
-        if !self.description.lateral {
-            velocity.z = T::zero();
-        }
-        velocity
+        let velocity = G::swirl(axis, position - joint);
+        if self.description.lateral { velocity } else { G::flattened(velocity) }
     }
 
     /// Partial angular velocity of a body in q̇ₖ.
-    pub fn partial_spin(&self, k: usize, body: usize) -> Vec3<T> {
-        if self.moves(k, body) { self.axis(k).0 } else { Vec3::zeros() }
+    pub fn partial_spin(&self, k: usize, body: usize) -> G::Spin {
+        if self.moves(k, body) { self.axis(k).0 } else { G::Spin::zero() }
     }
 
     /// Angular momentum of a body about its mass centre if it turned at `spin`.
-    pub fn spin_momentum(&self, body: usize, spin: &Vec3<T>) -> Vec3<T> {
-        let frame = &self.frames[body];
-        frame.in_world(&self.by_inertia(body, &frame.in_body(spin)))
+    pub fn spin_momentum(&self, body: usize, spin: G::Spin) -> G::Spin {
+        G::spin_momentum(&self.frames[body].axes, &self.numbers.bodies[body], spin)
     }
 
     /// Moment that a body's own rotation takes, about its mass centre: I α + ω × I ω, N·m.
-    pub fn spin_moment(&self, body: usize) -> Vec3<T> {
+    pub fn spin_moment(&self, body: usize) -> G::Spin {
         let frame = &self.frames[body];
-        // In the body's axes, where the inertia is constant.
-        let (spin, spin_rate) = (frame.in_body(&frame.spin), frame.in_body(&frame.spin_rate));
-        frame.in_world(&(self.by_inertia(body, &spin_rate) + spin.cross(&self.by_inertia(body, &spin))))
+        G::spin_moment(&frame.axes, &self.numbers.bodies[body], frame.spin, frame.spin_rate)
     }
+}
 
+/// The equations of motion as a whole, in space.
+impl<'a, T: Scalar> Multibody<'a, T> {
     /// A(q) of eq. 5, row-major, kg, kg·m and kg·m².
     pub fn inertia(&self, out: &mut [T]) {
         let n = self.size();
@@ -200,7 +195,7 @@ impl<'a, T: Scalar> Multibody<'a, T> {
                 let mut sum = T::zero();
                 for (b, body) in self.numbers.bodies.iter().enumerate() {
                     let [(v, w), (u, s)] = [self.partials(row, b), self.partials(column, b)];
-                    sum += body.mass * v.dot(&u) + w.dot(&self.spin_momentum(b, &s));
+                    sum += body.mass * v.dot(&u) + w.dot(&self.spin_momentum(b, s));
                 }
                 if row == column {
                     sum += self.rotor(row);
@@ -228,7 +223,7 @@ impl<'a, T: Scalar> Multibody<'a, T> {
         let nc = self.description.positions();
         let body = self.description.legs[leg].foot_body;
         for (k, row) in out.chunks_exact_mut(nc).enumerate().take(self.size()) {
-            let v = if k < nc { unit(k) } else { self.partial_velocity(k - nc, body, &self.feet[leg].position) };
+            let v = if k < nc { unit(k) } else { self.partial_velocity(k - nc, body, self.feet[leg].position) };
             row.copy_from_slice(&v.as_slice()[..nc]);
         }
     }
@@ -240,7 +235,7 @@ impl<'a, T: Scalar> Multibody<'a, T> {
         for (b, body) in self.numbers.bodies.iter().enumerate() {
             let com = self.com(b);
             let (spin, velocity) = (self.spin(b), pd + com.velocity);
-            kinetic += half * body.mass * velocity.dot(&velocity) + half * spin.dot(&self.spin_momentum(b, &spin));
+            kinetic += half * body.mass * velocity.dot(&velocity) + half * spin.dot(&self.spin_momentum(b, spin));
             potential += body.mass * self.numbers.gravity * (p.y + com.position.y);
         }
         for (joint, rate) in self.numbers.joints.iter().zip(qd) {
@@ -256,7 +251,7 @@ impl<'a, T: Scalar> Multibody<'a, T> {
             return (unit(k), Vec3::zeros());
         }
         let k = k - positions;
-        (self.partial_velocity(k, body, &self.coms[body].position), self.partial_spin(k, body))
+        (self.partial_velocity(k, body, self.coms[body].position), self.partial_spin(k, body))
     }
 
     /// Inertia that a rotor adds to coordinate `k` of X: it turns with its joint, gear² times as heavy.
@@ -264,76 +259,53 @@ impl<'a, T: Scalar> Multibody<'a, T> {
         let joint = k.checked_sub(self.description.positions()).and_then(|j| self.numbers.joints.get(j));
         joint.map_or(T::zero(), |j| j.rotor_inertia)
     }
-
-    /// A body's inertia about its mass centre times a vector, both in its own axes.
-    fn by_inertia(&self, body: usize, v: &Vec3<T>) -> Vec3<T> {
-        // Rows for columns: it is symmetric.
-        combined(&self.numbers.bodies[body].inertia, v)
-    }
 }
 
-impl<T: Scalar> Point<T> {
+impl<V> Point<V> {
     /// Leaves out its motion across the sagittal plane.
-    fn flatten(&mut self) {
-        self.velocity.z = T::zero();
-        self.acceleration.z = T::zero();
+    fn flatten<T: Scalar, G: Geometry<T, Vector = V>>(&mut self)
+    where
+        V: Copy,
+    {
+        self.velocity = G::flattened(self.velocity);
+        self.acceleration = G::flattened(self.acceleration);
     }
 }
 
-impl<T: Scalar> Frame<T> {
+impl<T: Scalar, G: Geometry<T>> Frame<T, G> {
     /// The world's axes.
     fn still() -> Self {
-        let zero = Vec3::zeros();
+        let (zero, still) = (G::Vector::zero(), G::Spin::zero());
         let origin = Point { position: zero, velocity: zero, acceleration: zero };
-        Frame { axes: [0, 1, 2].map(unit), axis: zero, spin: zero, spin_rate: zero, joint: origin }
-    }
-
-    fn in_world(&self, v: &Vec3<T>) -> Vec3<T> {
-        combined(&self.axes, v)
-    }
-
-    fn in_body(&self, v: &Vec3<T>) -> Vec3<T> {
-        Vec3::from(self.axes.map(|axis| axis.dot(v)))
+        Frame { axes: G::upright(), axis: still, spin: still, spin_rate: still, joint: origin }
     }
 
     /// Moves `point` to where this body has it: `arm` away from its joint, in its own axes.
-    fn locate(&self, arm: &Vec3<T>, point: &mut Point<T>) {
-        let arm = self.in_world(arm);
-        let swirl = self.spin.cross(&arm);
+    fn locate(&self, arm: &Vec3<T>, point: &mut Point<G::Vector>) {
+        let arm = G::in_world(&self.axes, G::seen(arm));
+        let swirl = G::swirl(self.spin, arm);
         point.position = self.joint.position + arm;
         point.velocity = self.joint.velocity + swirl;
-        point.acceleration = self.joint.acceleration + self.spin_rate.cross(&arm) + self.spin.cross(&swirl);
+        point.acceleration = self.joint.acceleration + G::swirl(self.spin_rate, arm) + G::swirl(self.spin, swirl);
     }
 
     /// Takes over the world's axes, at rest.
     fn rest(&mut self) {
-        self.axes = [0, 1, 2].map(unit);
-        self.spin = Vec3::zeros();
-        self.spin_rate = Vec3::zeros();
+        (self.axes, self.spin, self.spin_rate) = (G::upright(), G::Spin::zero(), G::Spin::zero());
     }
 
     /// Takes over the rotation and spin of the body above.
-    fn follow(&mut self, above: &Frame<T>) {
+    fn follow(&mut self, above: &Self) {
         (self.axes, self.spin, self.spin_rate) = (above.axes, above.spin, above.spin_rate);
     }
 
     /// Turns the frame about its own axis 0, 1 or 2.
     fn turn(&mut self, axis: usize, angle: T, rate: T, acceleration: T) {
-        let (sin, cos) = angle.sin_cos();
-        let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
-        let (x, y) = (self.axes[j], self.axes[k]);
-        self.axes[j] = x * cos + y * sin;
-        self.axes[k] = y * cos - x * sin;
-        self.axis = self.axes[axis];
-        self.spin_rate += self.axis * acceleration + self.spin.cross(&self.axis) * rate;
+        G::turn(&mut self.axes, axis, angle.sin_cos());
+        self.axis = G::axis(&self.axes, axis);
+        self.spin_rate += self.axis * acceleration + G::precession(self.spin, self.axis) * rate;
         self.spin += self.axis * rate;
     }
-}
-
-/// The matrix with these columns times a vector.
-#[inline]
-fn combined<T: Scalar>(columns: &[Vec3<T>; 3], v: &Vec3<T>) -> Vec3<T> {
-    columns[0] * v.x + columns[1] * v.y + columns[2] * v.z
 }
 
 fn unit<T: Scalar>(k: usize) -> Vec3<T> {

@@ -1,7 +1,7 @@
 //! The numbers of a robot and gait as scalars of any kind. What is no number (which body hangs on which, what turns
 //! about which axis) stays in the description.
 
-use super::multibody::Vec3;
+use super::geometry::Vec3;
 use super::scalar::Scalar;
 use crate::model::{Body, Description, Member};
 

@@ -12,7 +12,7 @@ use crate::motion::HalfStep;
 pub const TOLERANCE: f64 = 1e-12;
 
 /// A single support phase.
-pub struct Phase<'a, T = f64> {
+pub struct Phase<'a, T: Scalar = f64> {
     /// s.
     pub duration: f64,
     /// 1-based, for messages.

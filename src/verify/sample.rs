@@ -2,8 +2,8 @@
 
 use super::cycle::stance_leg;
 use super::error::{VerifyError, check};
+use super::geometry::Vec3;
 use super::instants::State;
-use super::multibody::Vec3;
 use super::phase::Phase;
 use crate::model::Description;
 use crate::motion::Motion;

@@ -11,34 +11,37 @@
 //! It is linear in β̈ with the coefficient f1 of eq. 8, which gives eq. 10. Then the reaction is
 //! F = Σ f, and the torque of a joint is the moment about its axis of all it carries (eq. 5).
 
-use super::multibody::{Multibody, Vec3};
+use super::geometry::{Geometry, Space, Vec3};
+use super::instants::State;
+use super::multibody::Multibody;
 use super::numbers::Numbers;
 use super::scalar::Scalar;
 use crate::model::{Description, Rotation};
+use num_traits::Zero;
 
 /// f1 below this share of (mass × leg²) counts as zero.
 const VANISHING: f64 = 1e-9;
 
 /// The mechanism on one leg, with room for what each body contributes.
 #[derive(Clone, Debug)]
-pub struct Support<'a, T = f64> {
-    pub multibody: Multibody<'a, T>,
+pub struct Support<'a, T: Scalar = f64, G: Geometry<T> = Space> {
+    pub multibody: Multibody<'a, T, G>,
     leg: usize,
     /// World axis of the free direction: 0, 1 or 2.
     axis: usize,
-    loads: Vec<Load<T>>,
+    loads: Vec<Load<G::Vector, G::Spin>>,
     /// Force and moment about the platform's mass centre of each body with all that it carries.
-    carried: Vec<(Vec3<T>, Vec3<T>)>,
+    carried: Vec<(G::Vector, G::Spin)>,
     smallest_f1: f64,
 }
 
 /// Inertial force (gravity included) and moment of a body, as if β̈ were 0, and what β̈ = 1 adds.
 #[derive(Clone, Copy, Debug)]
-struct Load<T> {
-    force: Vec3<T>,
-    moment: Vec3<T>,
-    force_per_beta: Vec3<T>,
-    moment_per_beta: Vec3<T>,
+struct Load<V, S> {
+    force: V,
+    moment: S,
+    force_per_beta: V,
+    moment_per_beta: S,
 }
 
 impl<'a> Support<'a> {
@@ -47,18 +50,18 @@ impl<'a> Support<'a> {
     }
 }
 
-impl<'a, T: Scalar> Support<'a, T> {
+impl<'a, T: Scalar, G: Geometry<T>> Support<'a, T, G> {
     /// The mechanism of `description` with other numbers.
     pub fn with(description: &'a Description, numbers: Numbers<T>, leg: usize) -> Self {
-        let zero = Vec3::zeros();
-        let load = Load { force: zero, moment: zero, force_per_beta: zero, moment_per_beta: zero };
+        let (zero, still) = (G::Vector::zero(), G::Spin::zero());
+        let load = Load { force: zero, moment: still, force_per_beta: zero, moment_per_beta: still };
         let length = leg_length(description);
         Support {
             multibody: Multibody::with(description, numbers),
             leg,
             axis: if description.rotation == Rotation::Roll { 0 } else { 2 },
             loads: vec![load; description.bodies.len()],
-            carried: vec![(zero, zero); description.bodies.len()],
+            carried: vec![(zero, still); description.bodies.len()],
             smallest_f1: VANISHING * description.total_mass() * length * length,
         }
     }
@@ -72,22 +75,21 @@ impl<'a, T: Scalar> Support<'a, T> {
         multibody.set(q, qd, qdd);
         let stance = multibody.foot(*leg);
         let stance_body = description.legs[*leg].foot_body;
-        let of_stance = |k| multibody.partial_velocity(k, stance_body, &stance.position);
+        let of_stance = |k| multibody.partial_velocity(k, stance_body, stance.position);
         let beta_of_stance = of_stance(beta);
         let (mut balance, mut f1) = (T::zero(), T::zero());
         let numbers = multibody.numbers();
         for (b, (body, load)) in numbers.bodies.iter().zip(loads).enumerate() {
             let com = multibody.com(b);
-            let mut acceleration = com.acceleration - stance.acceleration;
-            acceleration.y += numbers.gravity;
-            let partial = |k| multibody.partial_velocity(k, b, &com.position);
+            let acceleration = com.acceleration - stance.acceleration + G::up(numbers.gravity);
+            let partial = |k| multibody.partial_velocity(k, b, com.position);
             load.force = acceleration * body.mass;
             load.moment = multibody.spin_moment(b);
             load.force_per_beta = (partial(beta) - beta_of_stance) * body.mass;
-            load.moment_per_beta = multibody.spin_momentum(b, &multibody.partial_spin(beta, b));
+            load.moment_per_beta = multibody.spin_momentum(b, multibody.partial_spin(beta, b));
             let arm = com.position - stance.position;
-            balance += moment_about(*axis, &arm, &load.force) + load.moment[*axis];
-            f1 += moment_about(*axis, &arm, &load.force_per_beta) + load.moment_per_beta[*axis];
+            balance += G::about(G::moment(arm, load.force) + load.moment, *axis);
+            f1 += G::about(G::moment(arm, load.force_per_beta) + load.moment_per_beta, *axis);
         }
         let magnitude = f1.least_magnitude();
         if magnitude.is_nan() || magnitude <= *smallest_f1 {
@@ -100,17 +102,15 @@ impl<'a, T: Scalar> Support<'a, T> {
 
     /// The torque of every joint, N·m, and the reaction on the stance foot, N, for the state of the
     /// last [`Support::accelerate`], whose `qdd` is complete.
-    pub fn torques(&mut self, qdd: &[T], torques: &mut [T]) -> Vec3<T> {
+    pub fn torques(&mut self, qdd: &[T], torques: &mut [T]) -> G::Vector {
         let description = self.multibody.description();
         let beta = qdd[description.unactuated];
-        let mut reaction = Vec3::zeros();
-        for total in &mut self.carried {
-            *total = (Vec3::zeros(), Vec3::zeros());
-        }
+        let mut reaction = G::Vector::zero();
+        self.carried.fill((G::Vector::zero(), G::Spin::zero()));
         // Children before parents: what a body carries is its own load and that of its children.
         for (b, (body, load)) in description.bodies.iter().zip(&self.loads).enumerate().rev() {
             let force = load.force + load.force_per_beta * beta;
-            let moment = load.moment + load.moment_per_beta * beta + self.multibody.com(b).position.cross(&force);
+            let moment = load.moment + load.moment_per_beta * beta + G::moment(self.multibody.com(b).position, force);
             reaction += force;
             let (carried, carried_moment) = (self.carried[b].0 + force, self.carried[b].1 + moment);
             self.carried[b] = (carried, carried_moment);
@@ -126,20 +126,26 @@ impl<'a, T: Scalar> Support<'a, T> {
             let (mut force, mut moment) = self.carried[b];
             if self.multibody.moves(k, stance_body) {
                 force -= reaction;
-                moment -= stance.cross(&reaction);
+                moment -= G::moment(stance, reaction);
             }
             let (axis, joint) = self.multibody.axis(k);
-            torques[k] =
-                axis.dot(&(moment - joint.cross(&force))) + self.multibody.numbers().joints[k].rotor_inertia * qdd[k];
+            let rotor = self.multibody.numbers().joints[k].rotor_inertia * qdd[k];
+            torques[k] = G::along(moment - G::moment(joint, force), axis) + rotor;
         }
         reaction
     }
-}
 
-/// Component of the moment of a force about a world axis.
-fn moment_about<T: Scalar>(axis: usize, arm: &Vec3<T>, force: &Vec3<T>) -> T {
-    let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
-    force[k] * arm[j] - force[j] * arm[k]
+    /// Completes what follows from the last [`Support::accelerate`] and the `qdd` it wrote.
+    pub fn complete(&mut self, state: &mut State<T>) {
+        let force = self.torques(&state.qdd, &mut state.torques);
+        let [stance, swing] = [self.leg, 1 - self.leg].map(|leg| self.multibody.foot(leg));
+        // How deep the hips are does not matter in the plane.
+        let seen = |v| G::in_space(if self.multibody.description().lateral { v } else { G::flattened(v) });
+        state.force = G::in_space(force);
+        state.platform = seen(-stance.position);
+        state.swing = seen(swing.position - stance.position);
+        state.swing_velocity = G::in_space(swing.velocity - stance.velocity);
+    }
 }
 
 /// Length of the stretched leg 1, m: the unit in which lengths are judged.

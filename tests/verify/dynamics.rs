@@ -3,7 +3,9 @@
 use crate::motions::{Random, stepping};
 use piaffe::gaits::{GAITS, amble::Amble, trot::Trot};
 use piaffe::model::{Body, Gait};
-use piaffe::verify::{VerifyError, impact::impact, multibody::Multibody, support::Support, verify};
+use piaffe::verify::geometry::{Plane, Space};
+use piaffe::verify::{VerifyError, impact::impact, instants::State, multibody::Multibody, numbers::Numbers};
+use piaffe::verify::{support::Support, verify};
 
 const TOLERANCE: f64 = 1e-11;
 
@@ -98,6 +100,33 @@ fn single_support_agrees() {
                 let force = support.torques(&qdd, &mut torques);
                 let numeric = [&qdd[..], &torques, &force.as_slice()[..np]].concat();
                 compare("β̈, Γ, F", gait, &numeric, &generated[np..]);
+            }
+        }
+    }
+}
+
+/// What stays in the plane is the same in either geometry, to the bit.
+#[test]
+fn plane_and_space_agree() {
+    let sagittal: Vec<_> = GAITS.iter().filter(|gait| Plane::holds(gait.description())).collect();
+    assert!(sagittal.len() >= 2 && sagittal.len() < GAITS.len());
+    for gait in sagittal {
+        let d = gait.description();
+        for leg in 0..2 {
+            let mut plane: Support<f64, Plane> = Support::with(d, Numbers::new(d), leg);
+            let mut space: Support<f64, Space> = Support::with(d, Numbers::new(d), leg);
+            for (q, qd, qdd) in states(*gait) {
+                let [mut flat, mut solid] = [(); 2].map(|()| State::<f64> { qdd: qdd.clone(), ..State::new(d) });
+                let accelerations = [
+                    plane.accelerate(&q, &qd, &mut flat.qdd).unwrap(),
+                    space.accelerate(&q, &qd, &mut solid.qdd).unwrap(),
+                ];
+                assert_eq!(accelerations[0], accelerations[1], "{}", d.key);
+                plane.complete(&mut flat);
+                space.complete(&mut solid);
+                assert_eq!(flat.torques, solid.torques, "{}", d.key);
+                let vectors = |s: &State| [s.force, s.platform, s.swing, s.swing_velocity];
+                assert_eq!(vectors(&flat), vectors(&solid), "{}", d.key);
             }
         }
     }
