@@ -1,18 +1,27 @@
 //! Constraints between the nodes: where a path constraint dips below its values at the nodes.
 //!
 //! The optimizer imposes path constraints at the nodes. After each solution the motion is looked at on a
-//! fine grid; where a constraint dips near zero inside an element, its lowest point there becomes a row
-//! of its own (`cycle::dip`), with the value that the grid shows, and the problem is solved again from
-//! there. The row follows its dip, so two or three rounds suffice and no margin is needed.
+//! fine grid, in those elements where a constraint comes near zero; where one dips inside an element, its
+//! lowest point there becomes a row of its own (`cycle::dip`), with the value that the grid shows, and the
+//! problem is solved again from there. The row follows its dip, so two or three rounds suffice and no
+//! margin is needed.
 
 use crate::cycle::Cycle;
 use crate::instant::Glance;
+use crate::lgl::{Lobatto, NODES};
+use crate::polynomial::evaluate;
 use crate::stance::Undefined;
+use std::array::from_fn;
 
 /// Points of the grid per half step.
 const GRID: usize = 240;
 /// Constraints above this (scaled) are left alone.
 const NEAR: f64 = 2e-3;
+
+/// A constraint is taken to stay so near to the quartic through its values at the nodes of an element, in parts of their range.
+const DOUBT: f64 = 0.1;
+/// Places where the quartic is looked at.
+const LOOKS: usize = 12;
 
 /// What the grid shows.
 #[derive(Clone, Debug, Default)]
@@ -46,11 +55,11 @@ impl Dips {
 /// If the equations admit no state at some instant.
 pub fn dips(cycle: &Cycle) -> Result<Dips, Undefined> {
     let mut result = Dips::default();
-    // Of all constraints at three successive instants.
-    let mut values = [0, 1, 2].map(|_| vec![0.0; cycle.path().len()]);
     for phase in 0..cycle.phases() {
         let mut glance = Glance::new(cycle.description(), cycle.stance_leg(phase));
-        let instants = instants(cycle, phase);
+        let Suspects { instants, constraints } = suspects(cycle, phase);
+        // At three successive instants.
+        let mut values = [0, 1, 2].map(|_| vec![0.0; constraints.len()]);
         for (k, (s, node)) in instants.iter().enumerate() {
             let y = match node {
                 Some(node) => cycle.quantities(phase, *node),
@@ -60,14 +69,14 @@ pub fn dips(cycle: &Cycle) -> Result<Dips, Undefined> {
                 }
             };
             values.rotate_left(1);
-            for (value, constraint) in values[2].iter_mut().zip(cycle.path()) {
-                *value = constraint.value(y);
+            for (value, constraint) in values[2].iter_mut().zip(&constraints) {
+                *value = cycle.path()[*constraint].value(y);
             }
             if k < 2 {
                 continue;
             }
-            for constraint in 0..cycle.path().len() {
-                let v = [0, 1, 2].map(|i| values[i][constraint]);
+            for (i, &constraint) in constraints.iter().enumerate() {
+                let v = [0, 1, 2].map(|instant| values[instant][i]);
                 result.violation = result.violation.max(-v[1]);
                 // A dip inside the first or last interval shows in the parabola only.
                 let lowest = v[1] <= v[0] && v[1] < v[2] || k == 2 || k + 1 == instants.len();
@@ -87,14 +96,50 @@ pub fn dips(cycle: &Cycle) -> Result<Dips, Undefined> {
     Ok(result)
 }
 
-/// The instants of a half step in order, as shares of it, and the nodes that they are.
-fn instants(cycle: &Cycle, phase: usize) -> Vec<(f64, Option<usize>)> {
-    let nodes = (0..cycle.nodes(phase)).map(|node| (cycle.instant(phase, node), Some(node)));
-    let mut list: Vec<_> = nodes.chain((1..GRID).map(|k| (k as f64 / GRID as f64, None))).collect();
-    list.sort_by(|a, b| a.0.total_cmp(&b.0));
-    // Where a grid point is a node, the node stays.
-    list.dedup_by(|a, b| a.0 == b.0);
-    list
+/// What of a half step is worth a look.
+struct Suspects {
+    /// In order, as shares of the half step, and the nodes that they are: all nodes, and the grid in the elements where
+    /// some constraint comes near zero.
+    instants: Vec<(f64, Option<usize>)>,
+    /// Which come near zero anywhere.
+    constraints: Vec<usize>,
+}
+
+fn suspects(cycle: &Cycle, phase: usize) -> Suspects {
+    let lobatto = Lobatto::new();
+    let last = cycle.nodes(phase) - 1;
+    let mut near = vec![false; cycle.path().len()];
+    let mut instants = Vec::with_capacity(GRID + last);
+    let mut grid = (1..GRID).map(|k| k as f64 / GRID as f64).peekable();
+    for first in (0..last).step_by(NODES - 1) {
+        let mut look = false;
+        for (constraint, near) in cycle.path().iter().zip(&mut near) {
+            if comes_near(&lobatto, from_fn(|i| constraint.value(cycle.quantities(phase, first + i)))) {
+                (look, *near) = (true, true);
+            }
+        }
+        for node in first..first + NODES - 1 {
+            let [here, next] = [0, 1].map(|i| cycle.instant(phase, node + i));
+            instants.push((here, Some(node)));
+            while let Some(s) = grid.next_if(|s| *s < next) {
+                // Where a grid point is a node, the node stays.
+                if look && s > here {
+                    instants.push((s, None));
+                }
+            }
+        }
+    }
+    instants.push((cycle.instant(phase, last), Some(last)));
+    Suspects { instants, constraints: (0..near.len()).filter(|k| near[*k]).collect() }
+}
+
+/// Whether a constraint with these values at the nodes of an element comes near zero in it.
+fn comes_near(lobatto: &Lobatto, values: [f64; NODES]) -> bool {
+    let quartic = lobatto.interpolate(&values);
+    let looks = (1..LOOKS).map(|k| evaluate(&quartic, k as f64 / LOOKS as f64));
+    let low = values.into_iter().chain(looks).fold(f64::INFINITY, f64::min);
+    let high = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
+    low - DOUBT * (high - low) < NEAR
 }
 
 /// Lowest point of the parabola through three points.
