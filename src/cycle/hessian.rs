@@ -66,6 +66,8 @@ struct PhaseWork {
     n: Vec<f64>,
     /// One vector of local parameters per unactuated column of G.
     v: [Vec<f64>; 3],
+    /// A block of G times each parameter's part in (Q, Q̇, Q̈).
+    images: Vec<[f64; 3]>,
     scratch: Vec<f64>,
 }
 
@@ -86,6 +88,7 @@ impl Workspace {
                 shared: z(3 * nq + 4 * nq * nq),
                 n: z(d.joints() + 1),
                 v: [z(np), z(np), z(np)],
+                images: vec![[0.0; 3]; phase.layout.per_joint],
                 scratch: z(np),
             },
             reach: z(np),
@@ -536,11 +539,12 @@ impl PhaseWork {
                     continue;
                 }
                 let share = if ll == jj { 0.5 } else { 1.0 };
-                for (c, column) in basis.iter().enumerate() {
-                    let v = block.times(column).map(|x| share * x);
-                    for (r, row) in basis.iter().enumerate() {
-                        h[layout.joint(jj, r) * np + layout.joint(ll, c)] += dot3(row, &v);
-                    }
+                for (image, column) in self.images.iter_mut().zip(basis) {
+                    *image = block.times(column).map(|x| share * x);
+                }
+                for (r, row) in basis.iter().enumerate() {
+                    let slots = &mut h[layout.joint(jj, r) * np + layout.joint(ll, 0)..][..m];
+                    slots.iter_mut().zip(&self.images).for_each(|(slot, image)| *slot += dot3(row, image));
                 }
             }
             tt += dot3(&by_t[jj], &by_duration);
