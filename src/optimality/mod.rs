@@ -127,6 +127,7 @@ impl<'a> Linearized<'a> {
         let multipliers = multipliers(&mut cycle, &theta, scale)?;
         Ok(Linearized { cycle, theta, multipliers })
     }
+
     /// Names of limits that are active but have no price: the slightest change may make them hold the optimum, or not.
     pub fn unpriced(&self) -> Vec<String> {
         let (cycle, m) = (&self.cycle, &self.multipliers);

@@ -3,6 +3,7 @@
 use crate::cycle::{elements, renamed};
 use crate::model::Gait;
 use crate::motion::{HalfStep, Motion};
+use crate::sqp::dot;
 use crate::stance::{self, Layout, Mesh, Stance, Undefined};
 
 /// Intervals per half step at whose ends the motion is looked at.
@@ -183,8 +184,4 @@ fn acceleration(gait: &dyn Gait, leg: usize, at: &stance::State) -> Vec<f64> {
     let mut inverse = vec![0.0; 2 * nc + nq + d.joints()];
     gait.inverse(leg, &at.q, &at.qd, &at.prescribed[2], &mut inverse);
     inverse[nc..nc + nq].to_vec()
-}
-
-pub fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

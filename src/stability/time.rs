@@ -16,8 +16,9 @@
 //! ```
 
 use super::halving;
-use super::passage::{Passage, dot, with_next_names};
+use super::passage::{Passage, with_next_names};
 use crate::model::Gait;
+use crate::sqp::dot;
 use serde::{Deserialize, Serialize};
 
 /// What the clock of the references does when the foot lands.
