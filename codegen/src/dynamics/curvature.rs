@@ -15,8 +15,8 @@ use crate::spec::Rotation;
 use std::collections::BTreeMap;
 
 /// Kernels of the Hessian for stance on `leg`, and for the impact on `leg`.
-pub fn kernels(model: &mut Model, leg: usize) -> Vec<Kernel> {
-    vec![instant(model, leg), touchdown(model, leg)]
+pub fn kernels(model: &mut Model, leg: usize, turn: &Turn) -> Vec<Kernel> {
+    vec![instant(model, leg, turn), touchdown(model, leg)]
 }
 
 fn symbols(model: &mut Model, name: &str, count: usize) -> Vec<Var> {
@@ -76,11 +76,10 @@ pub struct Instant {
 }
 
 impl Instant {
-    pub fn new(model: &mut Model, leg: usize) -> Instant {
+    pub fn new(model: &mut Model, leg: usize, turn: &Turn) -> Instant {
         let n = symbols(model, "n", model.mechanism.joints.len() + 1);
         let phi = symbols(model, "phi", model.mechanism.positions());
         let others = symbols(model, "w", 6);
-        let turn = Turn::new(model, leg);
         let mut sum = virtual_power(model, leg, &n, &phi);
         let swing = subtract(&model.foot(1 - leg), &model.foot(leg));
         let swing_rate = model.rate(&swing);
@@ -93,8 +92,8 @@ impl Instant {
     }
 }
 
-fn instant(model: &mut Model, leg: usize) -> Kernel {
-    let Instant { n, phi, others, sum } = Instant::new(model, leg);
+fn instant(model: &mut Model, leg: usize, turn: &Turn) -> Kernel {
+    let Instant { n, phi, others, sum } = Instant::new(model, leg, turn);
     let kernel = Kernel::new(
         format!("curvature{}", leg + 1),
         "Gradient in (q, q̇, q̈) and second derivatives of the sum of all outputs of an instant, each with its weight: \

@@ -31,6 +31,7 @@ pub use whole::whole_kernels;
 use crate::mechanism::{Family, Mechanism};
 use crate::spec::Rotation;
 use lumps::Lumps;
+use turn::Turn;
 
 /// All kernels of a gait, in the order in which they are emitted.
 pub fn kernels(mechanism: &Mechanism) -> (Model, Vec<Kernel>) {
@@ -42,10 +43,11 @@ pub fn kernels(mechanism: &Mechanism) -> (Model, Vec<Kernel>) {
 fn derive(model: &mut Model) -> Vec<Kernel> {
     let mut kernels = floating::kernels(model);
     for leg in 0..2 {
-        kernels.extend(stance::kernels(model, leg));
-        kernels.extend(staging::kernels(model, leg));
+        let turn = Turn::new(model, leg);
+        kernels.extend(stance::kernels(model, leg, &turn));
+        kernels.extend(staging::kernels(model, leg, &turn));
         kernels.extend(impact::kernels(model, leg));
-        kernels.extend(curvature::kernels(model, leg));
+        kernels.extend(curvature::kernels(model, leg, &turn));
         if model.mechanism.rotation == Rotation::Roll {
             kernels.extend(sharing::kernels(model, leg));
         }

@@ -21,7 +21,8 @@ pub struct Weighted {
 
 /// The weighted sums of stance on `leg`, and of the impact on `leg`.
 pub fn weighted(model: &mut Model, leg: usize) -> Vec<Weighted> {
-    vec![instant(model, leg), terms(model, leg), touchdown(model, leg)]
+    let turn = Turn::new(model, leg);
+    vec![instant(model, leg, &turn), terms(model, leg, &turn), touchdown(model, leg)]
 }
 
 impl Weighted {
@@ -46,8 +47,8 @@ impl Weighted {
     }
 }
 
-fn instant(model: &mut Model, leg: usize) -> Weighted {
-    let Instant { n, phi, others, sum } = Instant::new(model, leg);
+fn instant(model: &mut Model, leg: usize, turn: &Turn) -> Weighted {
+    let Instant { n, phi, others, sum } = Instant::new(model, leg, turn);
     let kernel = Kernel::new(
         format!("sensitivity{}", leg + 1),
         "Gradient in the lumped parameters of the sum of all outputs of an instant, with the weights of the curvature's kernel.",
@@ -62,8 +63,7 @@ fn instant(model: &mut Model, leg: usize) -> Weighted {
 }
 
 /// f1, f2 and c one by one.
-fn terms(model: &mut Model, leg: usize) -> Weighted {
-    let turn = Turn::new(model, leg);
+fn terms(model: &mut Model, leg: usize, turn: &Turn) -> Weighted {
     let mut sum = Poly::zero();
     let weights: Vec<Var> = [&turn.f1, &turn.f2, &turn.c]
         .into_iter()

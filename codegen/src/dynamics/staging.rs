@@ -49,8 +49,7 @@ impl Early {
     }
 }
 
-pub fn kernels(model: &mut Model, leg: usize) -> Vec<Kernel> {
-    let turn = Turn::new(model, leg);
+pub fn kernels(model: &mut Model, leg: usize, turn: &Turn) -> Vec<Kernel> {
     let beta = model.unactuated(0);
     let (prescribed, rates) = (model.prescribed(0), model.prescribed(1));
     let mut early = Early { symbols: Vec::new(), values: Vec::new() };

@@ -14,7 +14,7 @@ use crate::spec::Rotation;
 use std::collections::BTreeMap;
 
 /// The reduced model of one stance leg, as expressions.
-pub struct Stance {
+pub struct Stance<'t> {
     /// Generalized forces of q: linear in q̈.
     pub forces: Vec<Poly>,
     /// Aq (eq. 6).
@@ -23,18 +23,17 @@ pub struct Stance {
     pub bias: Vec<Poly>,
     /// Reaction at the stance foot, N.
     pub reaction: Vec<Poly>,
-    pub turn: Turn,
+    pub turn: &'t Turn,
 }
 
-impl Stance {
-    pub fn new(model: &mut Model, leg: usize) -> Stance {
+impl Stance<'_> {
+    pub fn new<'t>(model: &mut Model, leg: usize, turn: &'t Turn) -> Stance<'t> {
         let origin = Origin::Foot(leg);
         let q = model.coordinates.q.clone();
         let qdd = model.q(2);
         let forces = model.generalized_forces(origin, &q);
         let inertia = model.jacobian(&forces, &qdd);
         let bias = forces.iter().map(|f| model.without(f, &qdd)).collect();
-        let turn = Turn::new(model, leg);
         // Change of linear momentum, less the weight.
         let moment = model.first_moment(origin);
         let momentum = model.rate(&moment);
@@ -53,8 +52,8 @@ fn platform_motion(model: &mut Model, leg: usize) -> [Vec<Poly>; 3] {
     [model.components(&p), model.components(&v), model.components(&a)]
 }
 
-pub fn kernels(model: &mut Model, leg: usize) -> Vec<Kernel> {
-    let stance = Stance::new(model, leg);
+pub fn kernels(model: &mut Model, leg: usize, turn: &Turn) -> Vec<Kernel> {
+    let stance = Stance::new(model, leg, turn);
     let name = |what: &str| format!("{what}{}", leg + 1);
     let (q, qd) = (model.q(0), model.q(1));
     let [position, velocity, acceleration] = platform_motion(model, leg);

@@ -61,7 +61,9 @@ fn nothing_times_anything(_: &Monomial, coefficient: f64) -> Option<Rewritten> {
 }
 
 fn squares_of_sines(monomial: &Monomial, coefficient: f64) -> Option<Rewritten> {
-    let at = monomial.windows(2).position(|w| w[0] == w[1] && w[0].is_sin())?;
+    // Sines come last.
+    let first = monomial.len() - monomial.iter().rev().take_while(|v| v.is_sin()).count();
+    let at = first + monomial[first..].windows(2).position(|w| w[0] == w[1])?;
     let cosine = monomial[at].cosine_of_same_angle();
     let mut rest = Monomial::from_slice(&monomial[..at]);
     rest.extend_from_slice(&monomial[at + 2..]);

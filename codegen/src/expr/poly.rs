@@ -227,19 +227,19 @@ impl Poly {
 
 /// The product of two sorted factor lists.
 pub(super) fn times(a: &[Var], b: &[Var]) -> Monomial {
-    let mut product = Monomial::with_capacity(a.len() + b.len());
-    let (mut i, mut j) = (0, 0);
-    while i < a.len() && j < b.len() {
-        if a[i] <= b[j] {
-            product.push(a[i]);
-            i += 1;
+    let mut product = Monomial::from_slice(a);
+    product.extend_from_slice(b);
+    // Merged from behind, in place.
+    let (mut i, mut j) = (a.len(), b.len());
+    while j > 0 {
+        if i > 0 && product[i - 1] > b[j - 1] {
+            product[i + j - 1] = product[i - 1];
+            i -= 1;
         } else {
-            product.push(b[j]);
-            j += 1;
+            product[i + j - 1] = b[j - 1];
+            j -= 1;
         }
     }
-    product.extend_from_slice(&a[i..]);
-    product.extend_from_slice(&b[j..]);
     product
 }
 

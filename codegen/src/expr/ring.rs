@@ -6,7 +6,7 @@
 use super::laws::OF_SUMS_OF_ANGLES;
 use super::poly::{Monomial, Poly, Terms, Var, times};
 use std::borrow::Cow;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Mutex;
 
 /// What an atom stands for.
@@ -35,8 +35,8 @@ pub struct Ring {
     rates: BTreeMap<Var, Var>,
     /// Memo of sums of symbols (rates of angles), so that each is bound once.
     sums: BTreeMap<Vec<Var>, Var>,
-    /// Memo of derivatives of bound atoms.
-    derivatives: Mutex<HashMap<(Var, Var), Poly>>,
+    /// Memo of derivatives of bound atoms, by the atoms' indices.
+    derivatives: Mutex<Vec<Vec<(Var, Poly)>>>,
 }
 
 impl Ring {
@@ -183,7 +183,8 @@ impl Ring {
     /// The derivative of a bound atom.
     fn with_inner_derivative(&self, atom: Var, by: Var, then: impl FnOnce(&Poly)) {
         if let Ok(known) = self.derivatives.lock()
-            && let Some(known) = known.get(&(atom, by))
+            && let Some(of_atom) = known.get(atom.index())
+            && let Some((_, known)) = of_atom.iter().find(|(symbol, _)| *symbol == by)
         {
             return then(known);
         }
@@ -197,7 +198,9 @@ impl Ring {
         };
         then(&result);
         if let Ok(mut known) = self.derivatives.lock() {
-            known.insert((atom, by), result);
+            let atoms = known.len().max(atom.index() + 1);
+            known.resize_with(atoms, Vec::new);
+            known[atom.index()].push((by, result));
         }
     }
 

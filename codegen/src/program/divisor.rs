@@ -4,8 +4,8 @@
 //! product is the sum of its factors' hashes, so that a quotient's is a difference. Where a hash
 //! decides about a rewriting, the factors themselves are compared too.
 
-use super::market::{Offer, Origin};
-use super::{Id, Sum, Term};
+use super::market::Origin;
+use super::Id;
 use smallvec::SmallVec;
 
 pub type Factors = SmallVec<[Id; 6]>;
@@ -16,7 +16,7 @@ pub enum Divisor {
     /// `first + ratio · second`, no common factor.
     Pair { first: Factors, second: Factors, ratio: f64 },
     /// Product of two nodes.
-    Product(Id, Id),
+    Product([Id; 2]),
     /// A node times a positive number.
     Scaled(Id, f64),
 }
@@ -28,6 +28,8 @@ pub struct Item {
     pub hash: u64,
     /// Which nodes can occur among the factors: a bit per node modulo 64.
     marks: u64,
+    /// Where its factors stand among those of all terms, and how many they are.
+    start: u32,
     length: u16,
     /// Multiplications to evaluate it.
     cost: u16,
@@ -44,11 +46,15 @@ pub struct Shared {
     count: u16,
 }
 
-/// Two terms of a sum, of which the first comes first in their divisor.
-pub struct Pair<'a> {
-    first: &'a Item,
-    second: &'a Item,
+/// What two terms of a sum, the older and the younger one, offer: a pair in which either comes first.
+#[derive(Clone, Copy)]
+pub struct Pair {
+    pub key: u64,
     shared: u16,
+    /// Whether the older one comes first.
+    ordered: bool,
+    /// Whether one part is a multiple of the other.
+    scaled: bool,
 }
 
 /// The mixing of SplitMix64: spreads numbers over all bits.
@@ -59,7 +65,7 @@ fn mix(x: u64) -> u64 {
 }
 
 /// Not for a multiple of `id`, which `mix` would nearly take to a multiple: a square must not look like a node.
-fn hash_of_node(id: Id) -> u64 {
+pub fn hash_of_node(id: Id) -> u64 {
     mix(u64::from(id).wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(0x2545_F491_4F6C_DD1D))
 }
 
@@ -72,9 +78,9 @@ pub fn hash_of(factors: &[Id]) -> u64 {
     factors.iter().fold(0, |sum, id| sum.wrapping_add(hash_of_node(*id)))
 }
 
-/// Key of the divisor `size · a`.
-pub fn scaled_key(a: Id, size: f64) -> u64 {
-    mix(hash_of_node(a) ^ mix(rounded(size)))
+/// Key of the divisor `size · a`, by the hash of a.
+pub fn scaled_key(a: u64, size: f64) -> u64 {
+    mix(a ^ mix(rounded(size)))
 }
 
 /// A coefficient without its last bits, which are rounding.
@@ -98,11 +104,13 @@ pub fn cost(coefficient: f64, factors: usize) -> i32 {
 }
 
 impl Item {
-    pub fn new(coefficient: f64, factors: &[Id]) -> Item {
+    /// A term whose factors, with these hashes, begin at `start` among those of all terms.
+    pub fn new(coefficient: f64, factors: &[Id], hashes: &[u64], start: usize) -> Item {
         Item {
             coefficient,
-            hash: hash_of(factors),
+            hash: hashes.iter().fold(0, |sum, hash| sum.wrapping_add(*hash)),
             marks: marks_of(factors),
+            start: start as u32,
             length: factors.len() as u16,
             cost: cost(coefficient, factors.len()) as u16,
             scaled: coefficient.abs() != 1.0,
@@ -114,23 +122,27 @@ impl Item {
         i32::from(self.cost)
     }
 
+    /// Its factors among those of all terms.
+    #[inline]
+    pub fn factors<'f>(&self, of_all: &'f [Id]) -> &'f [Id] {
+        &of_all[self.start as usize..][..usize::from(self.length)]
+    }
+
     /// Whether it may have all factors with these marks.
     pub fn may_contain(&self, marks: u64) -> bool {
         self.marks & marks == marks
     }
 
-    /// Divisors within this term.
-    pub fn offers(&self, f: &[Id], number: u32, mut found: impl FnMut(Offer)) {
-        let mut offer = |key: u64, origin: Origin, times: i16| {
-            found(Offer { key, cost: [1; 2], first: 0, saved: [times; 2], origin });
-        };
-        for (i, a) in f.iter().enumerate() {
-            let repeated = i > 0 && f[i - 1] == *a;
+    /// Divisors within this term, by its factors and their hashes: keys and how often each occurs.
+    #[inline]
+    pub fn divisors(&self, f: &[Id], hashes: &[u64], number: u32, mut found: impl FnMut(u64, i16, Origin)) {
+        let size = self.coefficient.abs();
+        for (i, (a, hash)) in f.iter().zip(hashes).enumerate() {
+            let repeated = self.repeats && i > 0 && f[i - 1] == *a;
             if !repeated && self.scaled {
-                offer(scaled_key(*a, self.coefficient.abs()), Origin::Scaled(*a, number), 1);
+                found(scaled_key(*hash, size), 1, Origin::Scaled(*a, number));
             }
-            let hash = hash_of_node(*a);
-            for (j, b) in f.iter().enumerate().skip(i + 1) {
+            for (j, (b, other)) in f.iter().zip(hashes).enumerate().skip(i + 1) {
                 let mut times = 1;
                 if self.repeats {
                     // Each different pair once, a square once.
@@ -141,7 +153,7 @@ impl Item {
                     let count = |id: &Id| f.iter().filter(|other| *other == id).count() as i16;
                     times = if a == b { count(a) / 2 } else { count(a).min(count(b)) };
                 }
-                offer(mix(hash.wrapping_add(hash_of_node(*b)) ^ 1), Origin::Product(*a, *b), times);
+                found(mix(hash.wrapping_add(*other) ^ 1), times, Origin::Product(*a, *b));
             }
         }
     }
@@ -165,15 +177,6 @@ impl Item {
     }
 }
 
-/// The hash of each node that a term contains, 0 for others.
-pub fn set_hashes(hashes: &mut [u64], factors: &[Id]) {
-    factors.iter().for_each(|id| hashes[*id as usize] = hash_of_node(*id));
-}
-
-pub fn reset_hashes(hashes: &mut [u64], factors: &[Id]) {
-    factors.iter().for_each(|id| hashes[*id as usize] = 0);
-}
-
 fn shared(a: &[Id], b: &[Id]) -> Shared {
     let mut shared = Shared::default();
     let (mut i, mut j) = (0, 0);
@@ -192,39 +195,40 @@ fn shared(a: &[Id], b: &[Id]) -> Shared {
     shared
 }
 
-impl<'a> Pair<'a> {
-    /// What two terms offer, given with their numbers: a pair in which either comes first.
+impl Pair {
     #[inline]
-    pub fn offer(older: (&Item, u32), newer: (&Item, u32), shared: Shared) -> Offer {
-        let (h1, h2) = (older.0.hash.wrapping_sub(shared.hash), newer.0.hash.wrapping_sub(shared.hash));
+    pub fn new(older: &Item, younger: &Item, shared: Shared) -> Pair {
+        let (h1, h2) = (older.hash.wrapping_sub(shared.hash), younger.hash.wrapping_sub(shared.hash));
         let ordered = h1 <= h2;
-        let (first, second, h1, h2) = if ordered { (older, newer, h1, h2) } else { (newer, older, h2, h1) };
-        let pair = Pair { first: first.0, second: second.0, shared: shared.count };
-        let ratio = exact(pair.second.coefficient / pair.first.coefficient);
+        let (first, second, h1, h2) = if ordered { (older, younger, h1, h2) } else { (younger, older, h2, h1) };
+        let ratio = exact(second.coefficient / first.coefficient);
         let parts = h1.wrapping_mul(0xD6E8_FEB8_6659_FD93).wrapping_add(h2.rotate_left(23));
         let key = mix(parts.wrapping_add(rounded(ratio).wrapping_mul(0x9E37_79B9_7F4A_7C15)));
-        let (cost, length) = pair.definition(ratio.abs() != 1.0);
-        Offer { key, cost, first: length, saved: pair.saved(), origin: Origin::Pair(first.1, second.1) }
+        Pair { key, shared: shared.count, ordered, scaled: ratio.abs() != 1.0 }
     }
 
-    /// A pair whose first part is known to have so many factors.
-    pub fn again(first: &'a Item, second: &'a Item, length: u16) -> Pair<'a> {
-        Pair { first, second, shared: first.length - length }
+    fn parts<T>(self, older: T, younger: T) -> [T; 2] {
+        if self.ordered { [older, younger] } else { [younger, older] }
     }
 
-    /// Operations that a definition costs, with the first or the second part's coefficient 1, and the first part's factors.
-    fn definition(&self, scaled: bool) -> ([i16; 2], u16) {
-        let (n1, n2) = (self.first.length - self.shared, self.second.length - self.shared);
+    pub fn origin(self, older: u32, younger: u32) -> Origin {
+        let [first, second] = self.parts(older, younger);
+        Origin::Pair(first, second)
+    }
+
+    /// Operations that a definition costs, with the first or the second part's coefficient 1.
+    pub fn cost(self, older: &Item, younger: &Item) -> [i16; 2] {
+        let [n1, n2] = self.parts(older, younger).map(|item| item.length - self.shared);
         let products = (n1.saturating_sub(1) + n2.saturating_sub(1) + 1) as i16;
-        let scale = |factors: u16| i16::from(factors > 0 && scaled);
-        ([products + scale(n2), products + scale(n1)], n1)
+        let scale = |factors: u16| i16::from(factors > 0 && self.scaled);
+        [products + scale(n2), products + scale(n1)]
     }
 
     /// Operations that it saves to replace it, with the first or the second part's coefficient 1.
     #[inline]
-    pub fn saved(&self) -> [i16; 2] {
-        let saved = (self.first.cost + self.second.cost + 1 - self.shared) as i16;
-        [saved - i16::from(self.first.scaled), saved - i16::from(self.second.scaled)]
+    pub fn saved(self, older: &Item, younger: &Item) -> [i16; 2] {
+        let saved = (older.cost + younger.cost + 1 - self.shared) as i16;
+        self.parts(older, younger).map(|one| saved - i16::from(one.scaled))
     }
 }
 
@@ -262,23 +266,14 @@ impl Divisor {
         }
     }
 
-    /// The nodes that it is made of.
-    pub fn nodes(&self) -> impl Iterator<Item = Id> {
-        let (nodes, more): (&[Id], &[Id]) = match self {
-            Divisor::Pair { first, second, .. } => (first, second),
-            Divisor::Product(a, b) => (std::slice::from_ref(a), std::slice::from_ref(b)),
-            Divisor::Scaled(a, _) => (std::slice::from_ref(a), &[]),
-        };
-        nodes.iter().chain(more).copied()
-    }
-
-    /// The sum that defines it; a pair's first part gets the coefficient `scale`.
-    pub fn definition(&self, scale: f64) -> Sum {
-        let term = |coefficient: f64, factors: &[Id]| Term { coefficient: exact(coefficient), factors: factors.into() };
+    /// The terms of its definition; a pair's first part gets the coefficient `scale`.
+    pub fn terms(&self, scale: f64) -> SmallVec<[(f64, &[Id]); 2]> {
         match self {
-            Divisor::Pair { first, second, ratio } => vec![term(scale, first), term(ratio * scale, second)],
-            Divisor::Product(a, b) => vec![term(1.0, &[*a, *b])],
-            Divisor::Scaled(a, size) => vec![term(*size, &[*a])],
+            Divisor::Pair { first, second, ratio } => {
+                SmallVec::from_buf([(exact(scale), first), (exact(ratio * scale), second)])
+            }
+            Divisor::Product(nodes) => SmallVec::from_iter([(1.0, &nodes[..])]),
+            Divisor::Scaled(node, size) => SmallVec::from_iter([(exact(*size), std::slice::from_ref(node))]),
         }
     }
 }

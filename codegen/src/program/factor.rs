@@ -6,53 +6,51 @@
 //! sums becomes a node of its own, and the search goes on until none saves any.
 
 use super::divisor::{
-    Divisor, Factors, Item, Pair, cost, exact, hash_of, marks_of, reset_hashes, rounded, scaled_key, set_hashes,
-    without,
+    Divisor, Factors, Item, Pair, cost, exact, hash_of, hash_of_node, marks_of, rounded, scaled_key, without,
 };
-use super::market::{Best, Market, Number, Offer, Origin};
+use super::market::{Best, Market, Number, Offered, Origin};
 use super::{Id, Node, Program, Term};
 use smallvec::SmallVec;
 use std::collections::HashMap;
 
 struct Search<'a> {
     nodes: &'a mut Vec<Node>,
-    /// All terms there ever were.
-    terms: Vec<Term>,
+    /// All terms there ever were, and their factors one after another.
+    terms: Vec<Item>,
+    factors: Vec<Id>,
     sums: Vec<Sum>,
     /// Rows of `Entry`s.
     offered: Vec<Offered>,
-    /// Sums in which a node occurs or has occurred.
+    /// Sums in which a node occurs or has occurred, in order.
     places: Vec<SmallVec<[u32; 4]>>,
     market: Market,
-    /// A zero for every node, but while a term is compared with others.
+    /// The hashes of the factors of the term at hand, and by nodes, with a zero for those that it has not.
+    own: Vec<u64>,
     hashes: Vec<u64>,
-    /// What the term at hand offers, and the numbers of these divisors.
-    offers: Vec<Offer>,
-    numbers: Vec<Number>,
+    /// What the term at hand and others of its sum offer, and which divisors these probably are.
+    with_older: Vec<(Pair, Number)>,
+    /// Where the divisor at hand occurs.
+    found: Vec<Rewrite>,
 }
 
 /// The terms that a sum has.
 #[derive(Default)]
 struct Sum {
     entries: Vec<Entry>,
-    /// How many it ever had.
-    births: u32,
+    /// Slots that no entry has; all others below their number together are taken.
+    vacant: Vec<u32>,
 }
 
 #[derive(Clone, Copy)]
 struct Entry {
     item: Item,
     term: u32,
-    /// Its number among all terms that the sum ever had.
-    birth: u32,
-    /// Where the divisors begin that it has in itself, and those with the terms born before it.
+    /// Its place in the rows of younger terms of the sum.
+    slot: u32,
+    /// Where the divisors begin that it has in itself, and those with older terms, by their slots.
     row: u32,
     pairs: u32,
 }
-
-/// What a term or a pair of terms has offered: a divisor, and whether the older of the two comes first in it.
-#[derive(Clone, Copy, Default)]
-struct Offered(Number);
 
 /// An occurrence in a sum: which terms go, what takes their place.
 struct Rewrite {
@@ -69,101 +67,95 @@ pub fn factor(program: &mut Program) {
     let mut search = Search {
         places: vec![SmallVec::new(); program.nodes.len()],
         hashes: vec![0; program.nodes.len()],
-        offers: Vec::new(),
-        numbers: Vec::new(),
+        own: Vec::new(),
+        with_older: Vec::new(),
+        found: Vec::new(),
         nodes: &mut program.nodes,
         terms: Vec::new(),
-        sums: program.sums.iter().map(|s| Sum { entries: Vec::with_capacity(s.len()), births: 0 }).collect(),
+        factors: Vec::new(),
+        sums: program.sums.iter().map(|s| Sum { entries: Vec::with_capacity(s.len()), ..Sum::default() }).collect(),
         offered: Vec::with_capacity(6 * pairs),
         market: Market::new(pairs),
     };
     for (sum, terms) in program.sums.iter().enumerate() {
-        terms.iter().for_each(|t| search.insert(sum, t.coefficient, Factors::from_slice(&t.factors)));
+        terms.iter().for_each(|t| search.insert(sum, t.coefficient, &t.factors));
     }
     search.market.open();
     while let Some(best) = search.market.best() {
         search.extract(&best);
     }
-    let term = |entry: &Entry| search.terms[entry.term as usize].clone();
+    let term = |Entry { item, .. }: &Entry| Term {
+        coefficient: item.coefficient,
+        factors: Factors::from_slice(item.factors(&search.factors)),
+    };
     program.sums = search.sums.iter().map(|sum| sum.entries.iter().map(term).collect()).collect();
     program.sums.iter_mut().for_each(|sum| sum.sort_by(|a, b| a.factors.cmp(&b.factors)));
     merge_equal_sums(program);
 }
 
-impl Offered {
-    fn new(number: Number, ordered: bool) -> Offered {
-        Offered(number << 1 | u32::from(ordered))
-    }
-
-    fn number(self) -> Number {
-        self.0 >> 1
-    }
-
-    fn ordered(self) -> bool {
-        self.0 & 1 == 1
-    }
-}
-
 impl Search<'_> {
     /// Adds a term to a sum, with all that it offers.
-    fn insert(&mut self, sum: usize, coefficient: f64, mut factors: Factors) {
-        factors.sort_unstable();
-        let item = Item::new(coefficient, &factors);
-        let term = self.terms.len() as u32;
-        let Sum { entries, births } = &mut self.sums[sum];
-        self.offers.clear();
-        item.offers(&factors, term, |offer| self.offers.push(offer));
-        let alone = self.offers.len();
-        set_hashes(&mut self.hashes, &factors);
-        self.offers.extend(entries.iter().map(|other| {
-            let shared = item.shared(&factors, &self.hashes, &other.item, &self.terms[other.term as usize].factors);
-            Pair::offer((&other.item, other.term), (&item, term), shared)
-        }));
-        reset_hashes(&mut self.hashes, &factors);
-        self.market.add(&self.offers, &mut self.numbers);
+    fn insert(&mut self, sum: usize, coefficient: f64, factors: &[Id]) {
+        let (term, start) = (self.terms.len() as u32, self.factors.len());
+        self.factors.extend_from_slice(factors);
+        self.factors[start..].sort_unstable();
+        let (older_factors, factors) = self.factors.split_at(start);
+        self.own.clear();
+        self.own.extend(factors.iter().map(|id| hash_of_node(*id)));
+        let item = Item::new(coefficient, factors, &self.own, start);
+        let Sum { entries, vacant } = &mut self.sums[sum];
+
         let row = self.offered.len();
-        self.offered.extend(self.numbers[..alone].iter().map(|number| Offered::new(*number, false)));
+        item.divisors(factors, &self.own, term, |key, times, origin| {
+            let guess = self.market.guess(key);
+            self.offered.push(self.market.add(key, guess, [times; 2], || (origin, [1; 2])));
+        });
         let pairs = self.offered.len();
-        self.offered.resize(pairs + *births as usize, Offered::default());
-        for ((other, offer), number) in entries.iter().zip(&self.offers[alone..]).zip(&self.numbers[alone..]) {
-            let ordered = matches!(offer.origin, Origin::Pair(first, _) if first == other.term);
-            self.offered[pairs + other.birth as usize] = Offered::new(*number, ordered);
+        factors.iter().zip(&self.own).for_each(|(id, hash)| self.hashes[*id as usize] = *hash);
+        self.with_older.clear();
+        self.with_older.extend(entries.iter().map(|Entry { item: older, .. }| {
+            let shared = item.shared(factors, &self.hashes, older, older.factors(older_factors));
+            let pair = Pair::new(older, &item, shared);
+            (pair, self.market.guess(pair.key))
+        }));
+        factors.iter().for_each(|id| self.hashes[*id as usize] = 0);
+        let slots = entries.len() + vacant.len();
+        self.offered.resize(pairs + slots, Offered::default());
+        for (older, (pair, guess)) in entries.iter().zip(&self.with_older) {
+            let new = || (pair.origin(older.term, term), pair.cost(&older.item, &item));
+            let offered = self.market.add(pair.key, *guess, pair.saved(&older.item, &item), new);
+            self.offered[pairs + older.slot as usize] = offered;
         }
-        entries.push(Entry { item, term, birth: *births, row: row as u32, pairs: pairs as u32 });
-        *births += 1;
-        for id in &factors {
+
+        let slot = vacant.pop().unwrap_or(slots as u32);
+        entries.push(Entry { item, term, slot, row: row as u32, pairs: pairs as u32 });
+        for id in factors {
             let places = &mut self.places[*id as usize];
-            if places.last() != Some(&(sum as u32)) {
-                places.push(sum as u32);
+            if let Err(at) = places.binary_search(&(sum as u32)) {
+                places.insert(at, sum as u32);
             }
         }
-        self.terms.push(Term { coefficient, factors });
+        self.terms.push(item);
     }
 
     /// Takes a term out of a sum, with all that it offered.
     fn remove(&mut self, sum: usize, at: usize) {
-        let entries = &mut self.sums[sum].entries;
+        let Sum { entries, vacant } = &mut self.sums[sum];
         let gone = entries.swap_remove(at);
-        let factors = &self.terms[gone.term as usize].factors;
-        let mut alone = self.offered[gone.row as usize..gone.pairs as usize].iter();
-        gone.item.offers(factors, gone.term, |offer| {
-            alone.next().into_iter().for_each(|known| self.market.take(known.number(), offer.saved));
-        });
+        vacant.push(gone.slot);
+        self.offered[gone.row as usize..gone.pairs as usize].iter().for_each(|offered| self.market.take(*offered));
         for other in entries.iter() {
-            let (older, newer) = if gone.birth < other.birth { (&gone, other) } else { (other, &gone) };
-            let offered = self.offered[(newer.pairs + older.birth) as usize];
-            let (first, second) = if offered.ordered() { (older, newer) } else { (newer, older) };
-            let pair = Pair::again(&first.item, &second.item, self.market.first(offered.number()));
-            self.market.take(offered.number(), pair.saved());
+            let (older, younger) = if gone.term < other.term { (&gone, other) } else { (other, &gone) };
+            self.market.take(self.offered[(younger.pairs + older.slot) as usize]);
         }
     }
 
     fn divisor(&self, origin: Origin) -> Divisor {
         let coefficient = |i: u32| self.terms[i as usize].coefficient;
-        let term = |i: u32| (coefficient(i), &self.terms[i as usize].factors[..]);
+        let term = |i: u32| (coefficient(i), self.terms[i as usize].factors(&self.factors));
         match origin {
             Origin::Pair(i, j) => Divisor::pair(term(i), term(j)),
-            Origin::Product(a, b) => Divisor::Product(a, b),
+            Origin::Product(a, b) => Divisor::Product([a, b]),
             Origin::Scaled(a, i) => Divisor::Scaled(a, coefficient(i).abs()),
         }
     }
@@ -171,76 +163,93 @@ impl Search<'_> {
     fn extract(&mut self, best: &Best) {
         let divisor = self.divisor(best.origin);
         let node = self.nodes.len() as Id;
-        let rarest = divisor.nodes().min_by_key(|id| self.places[*id as usize].len());
-        let mut places = rarest.map_or(Vec::new(), |id| self.places[id as usize].to_vec());
-        places.sort_unstable();
-        places.dedup();
-        let mut found = Vec::new();
-        places.into_iter().for_each(|s| self.occurrences(s as usize, &divisor, node, &mut found));
+        let mut found = std::mem::take(&mut self.found);
+        found.clear();
+        let terms = divisor.terms(1.0);
+        let nodes = terms.iter().flat_map(|(_, factors)| *factors);
+        let rarest = nodes.map(|id| &self.places[*id as usize]).min_by_key(|places| places.len());
+        rarest.into_iter().flatten().for_each(|s| self.occurrences(*s as usize, &divisor, node, &mut found));
         let (scale, gain) = self.scale(&divisor, &found);
         // Occurrences can overlap: then the gain was counted too high.
         if gain < best.gain {
-            return self.market.correct(best, gain);
+            self.market.correct(best, gain);
+        } else {
+            self.replace(&divisor, scale, &found);
         }
+        self.found = found;
+    }
+
+    /// Makes a divisor a node of its own in all that was found.
+    fn replace(&mut self, divisor: &Divisor, scale: f64, found: &[Rewrite]) {
         self.nodes.push(Node::Value(self.sums.len()));
         self.places.push(SmallVec::new());
         self.hashes.push(0);
         for list in found.chunk_by(|a, b| a.sum == b.sum) {
-            let mut gone: Vec<usize> = list.iter().flat_map(|r| r.gone.iter().copied()).collect();
+            let mut gone: SmallVec<[usize; 8]> = list.iter().flat_map(|r| r.gone.iter().copied()).collect();
             gone.sort_unstable();
             gone.into_iter().rev().for_each(|at| self.remove(list[0].sum, at));
-            list.iter().for_each(|r| self.insert(r.sum, exact(r.coefficient / scale), Factors::from_slice(&r.factors)));
+            list.iter().for_each(|r| self.insert(r.sum, exact(r.coefficient / scale), &r.factors));
         }
         let new = self.sums.len();
         self.sums.push(Sum::default());
-        for term in divisor.definition(scale) {
-            self.insert(new, term.coefficient, term.factors);
-        }
+        divisor.terms(scale).into_iter().for_each(|(coefficient, factors)| self.insert(new, coefficient, factors));
     }
 
     /// The coefficient of a divisor's first part with which it saves most, and how much that is.
     fn scale(&self, divisor: &Divisor, found: &[Rewrite]) -> (f64, i32) {
-        let Divisor::Pair { first, second, ratio } = divisor else { return (1.0, self.gain(divisor, found, 1.0)) };
-        let mut scales = vec![1.0, 1.0 / ratio.abs()];
+        let cost = |at: &usize, sum: usize| self.sums[sum].entries[*at].item.cost() + 1;
+        let before: i32 = found.iter().map(|r| r.gone.iter().map(|at| cost(at, r.sum)).sum::<i32>() - 1).sum();
+        let gain = |scale: f64| before - self.cost(divisor, found, scale);
+        let mut best = (1.0, gain(1.0));
+        let Divisor::Pair { first, second, ratio } = divisor else { return best };
+        let mut last = 1.0;
+        let mut attempt = |scale: f64| {
+            if rounded(scale) != rounded(last) {
+                let gain = gain(scale);
+                if gain > best.1 {
+                    best = (scale, gain);
+                }
+            }
+            last = scale;
+        };
+        attempt(1.0 / ratio.abs());
         // Equal coefficients are factored out in any case.
         if exact(*ratio).abs() != 1.0 && (first.len() == 1 || second.len() == 1) {
-            scales.extend(found.iter().map(|r| r.coefficient.abs()));
-            scales.dedup_by_key(|scale| rounded(*scale));
+            found.iter().for_each(|r| attempt(r.coefficient.abs()));
         }
-        let gains = scales.into_iter().map(|scale| (scale, self.gain(divisor, found, scale)));
-        gains.reduce(|best, next| if next.1 > best.1 { next } else { best }).unwrap_or((1.0, 0))
+        best
     }
 
-    /// Operations saved if the divisor replaces all that was found.
-    fn gain(&self, divisor: &Divisor, found: &[Rewrite], scale: f64) -> i32 {
-        let mut gain = 0;
-        for r in found {
-            let before: i32 = r.gone.iter().map(|at| self.sums[r.sum].entries[*at].item.cost()).sum();
-            gain += before + r.gone.len() as i32 - 1 - cost(exact(r.coefficient / scale), r.factors.len());
-        }
-        let definition = divisor.definition(scale);
-        gain -= definition.iter().map(|t| t.cost() as i32).sum::<i32>() + definition.len() as i32 - 1;
+    /// Operations of a divisor and of what takes the place of all that was found.
+    fn cost(&self, divisor: &Divisor, found: &[Rewrite], scale: f64) -> i32 {
+        let rewritten = |r: &Rewrite| cost(exact(r.coefficient / scale), r.factors.len());
+        let definition = divisor.terms(scale);
+        let of_term = |(coefficient, factors): &(f64, &[Id])| cost(*coefficient, factors.len());
+        let mut operations = found.iter().map(rewritten).sum::<i32>() + definition.len() as i32 - 1;
+        operations += definition.iter().map(of_term).sum::<i32>();
         if definition.len() == 2 {
             // A part that is needed elsewhere too costs nothing here.
-            for part in definition.iter().filter(|t| t.factors.len() == 1 && t.coefficient.abs() != 1.0) {
-                let here = found.iter().filter(|r| rounded(r.coefficient.abs()) == rounded(scale)).count() as i32;
-                gain += i32::from(self.market.saved(scaled_key(part.factors[0], part.coefficient.abs())) > here);
+            for (size, factors) in definition.iter().map(|(coefficient, factors)| (coefficient.abs(), *factors)) {
+                let [node] = *factors else { continue };
+                let here = || found.iter().filter(|r| rounded(r.coefficient.abs()) == rounded(scale)).count() as i32;
+                let needed = size != 1.0 && self.market.saved(scaled_key(hash_of_node(node), size)) > here();
+                operations -= i32::from(needed);
             }
         }
-        gain
+        operations
     }
 
     /// Occurrences of `divisor` in a sum that do not overlap.
     fn occurrences(&self, sum: usize, divisor: &Divisor, node: Id, found: &mut Vec<Rewrite>) {
         let entries = &self.sums[sum].entries;
-        let factors = |entry: &Entry| &self.terms[entry.term as usize].factors;
+        let factors = |entry: &Entry| entry.item.factors(&self.factors);
         let containing = |marks: u64| entries.iter().enumerate().filter(move |(_, e)| e.item.may_contain(marks));
         match divisor {
-            Divisor::Product(a, b) => {
-                for (i, entry) in containing(marks_of(&[*a, *b])) {
+            Divisor::Product(nodes) => {
+                for (i, entry) in containing(marks_of(nodes)) {
                     let mut rest = Factors::from_slice(factors(entry));
                     let mut times = 0;
-                    while let Some(less) = without(&rest, &[*a, *b]) {
+                    while let Some(less) = without(&rest, nodes) {
                         rest = less;
                         times += 1;
                     }

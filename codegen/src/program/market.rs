@@ -19,36 +19,26 @@ pub enum Origin {
 /// A divisor, by the order in which they were first seen.
 pub type Number = u32;
 
-/// An occurrence of a divisor.
-pub struct Offer {
-    pub key: u64,
-    /// Operations that a definition costs, with the first or the second part's coefficient 1.
-    pub cost: [i16; 2],
-    /// Factors of a pair's first part.
-    pub first: u16,
-    /// What it saves to replace it, for either choice of the coefficient that is 1.
-    pub saved: [i16; 2],
-    pub origin: Origin,
+/// An occurrence that the market has: of which divisor, and what it saves.
+#[derive(Clone, Copy, Default)]
+pub struct Offered {
+    number: Number,
+    saved: [i16; 2],
 }
 
 struct Listing {
     key: u64,
-    /// See [`Offer`].
-    cost: [i16; 2],
-    first: u16,
-    /// What its occurrences save in all, for either choice of the coefficient that is 1.
-    saved: [i32; 2],
-    /// What occurrences that overlap, so that not all can be replaced, were found to count too much.
-    overcount: i32,
+    origin: Origin,
+    /// What its occurrences save in all less what it costs, for either choice of the coefficient that is 1.
+    gains: [i32; 2],
     /// The gain of its highest entry in the queue.
     queued: i32,
 }
 
 impl Listing {
-    /// Operations saved if all occurrences are replaced, less what the divisor costs.
+    /// Operations saved if all occurrences are replaced.
     fn gain(&self) -> i32 {
-        let with = |unit: usize| self.saved[unit] - i32::from(self.cost[unit]);
-        with(0).max(with(1)) - self.overcount
+        self.gains[0].max(self.gains[1])
     }
 }
 
@@ -93,7 +83,6 @@ impl Level {
 /// All divisors that the sums offer.
 pub struct Market {
     listings: Vec<Listing>,
-    origins: Vec<Origin>,
     /// Open addressing: half a key and the divisor's number; the length is a power of two.
     table: Vec<(u32, Number)>,
     /// The divisors of each gain. Gains may be out of date: too high, never too low.
@@ -108,8 +97,7 @@ impl Market {
     /// A market with room for about so many divisors, and as many again that come from rewriting.
     pub fn new(room: usize) -> Market {
         let table = vec![(0, VACANT); (room + room / 4).next_power_of_two().max(64)];
-        let (listings, origins) = (Vec::with_capacity(2 * room), Vec::with_capacity(2 * room));
-        Market { listings, origins, table, queue: Vec::new(), open: false }
+        Market { listings: Vec::with_capacity(2 * room), table, queue: Vec::new(), open: false }
     }
 
     /// The place of `key` or where it belongs.
@@ -125,6 +113,7 @@ impl Market {
         }
     }
 
+    #[cold]
     fn grow(&mut self) {
         let larger = vec![(0, VACANT); 2 * self.table.len()];
         self.table = larger;
@@ -141,49 +130,60 @@ impl Market {
         (number != VACANT).then_some(number)
     }
 
-    /// Adds occurrences. `numbers` become those of their divisors.
-    pub fn add(&mut self, offers: &[Offer], numbers: &mut Vec<Number>) {
-        let mask = self.table.len() - 1;
-        let likely = |offer: &Offer| {
-            let (half, number) = self.table[offer.key as usize & mask];
-            if half == (offer.key >> 32) as u32 { number } else { VACANT }
-        };
-        numbers.clear();
-        numbers.extend(offers.iter().map(likely));
-        for (offer, number) in offers.iter().zip(numbers) {
-            if self.listings.get(*number as usize).is_none_or(|likely| likely.key != offer.key) {
-                *number = self.number(offer);
-            }
-            let listing = &mut self.listings[*number as usize];
-            listing.saved[0] += i32::from(offer.saved[0]);
-            listing.saved[1] += i32::from(offer.saved[1]);
-            if self.open {
-                self.queue(*number);
-            }
-        }
+    /// The number of the divisor that probably has this key, for many of which to ask before they are added.
+    #[inline]
+    pub fn guess(&self, key: u64) -> Number {
+        let (half, number) = self.table[key as usize & (self.table.len() - 1)];
+        if half == (key >> 32) as u32 { number } else { VACANT }
     }
 
-    /// The number of an offered divisor, which is listed if it is new.
-    fn number(&mut self, offer: &Offer) -> Number {
-        let at = self.place(offer.key);
-        let Offer { key, cost, first, origin, .. } = *offer;
-        if self.table[at].1 == VACANT {
-            self.table[at] = ((key >> 32) as u32, self.listings.len() as Number);
-            self.listings.push(Listing { key, cost, first, saved: [0; 2], overcount: 0, queued: 0 });
-            self.origins.push(origin);
-            if 5 * self.listings.len() > 4 * self.table.len() {
-                self.grow();
-            }
-            return self.listings.len() as Number - 1;
+    /// Adds an occurrence, of the divisor `guess` if that has its key. `saved` is what it saves to replace it, for
+    /// either choice of the coefficient that is 1; `new` tells where it was seen and the operations that a definition
+    /// costs, again for either choice, if it is a new one.
+    #[inline]
+    pub fn add(
+        &mut self,
+        key: u64,
+        guess: Number,
+        saved: [i16; 2],
+        new: impl FnOnce() -> (Origin, [i16; 2]),
+    ) -> Offered {
+        let number = match self.listings.get(guess as usize) {
+            Some(listing) if listing.key == key => guess,
+            _ => self.number(key, new),
+        };
+        let listing = &mut self.listings[number as usize];
+        listing.gains[0] += i32::from(saved[0]);
+        listing.gains[1] += i32::from(saved[1]);
+        if self.open && listing.gain() > listing.queued {
+            self.queue(number);
         }
-        self.table[at].1
+        Offered { number, saved }
+    }
+
+    /// The number of the divisor with this key, which is listed if it is new.
+    #[inline]
+    fn number(&mut self, key: u64, new: impl FnOnce() -> (Origin, [i16; 2])) -> Number {
+        let at = self.place(key);
+        if self.table[at].1 != VACANT {
+            return self.table[at].1;
+        }
+        let number = self.listings.len() as Number;
+        self.table[at] = ((key >> 32) as u32, number);
+        let (origin, cost) = new();
+        self.listings.push(Listing { key, origin, gains: cost.map(|cost| -i32::from(cost)), queued: 0 });
+        if 5 * self.listings.len() > 4 * self.table.len() {
+            self.grow();
+        }
+        number
     }
 
     /// Takes an occurrence back.
-    pub fn take(&mut self, number: Number, saved: [i16; 2]) {
-        let listing = &mut self.listings[number as usize];
-        listing.saved[0] -= i32::from(saved[0]);
-        listing.saved[1] -= i32::from(saved[1]);
+    #[inline]
+    pub fn take(&mut self, offered: Offered) {
+        let listing = &mut self.listings[offered.number as usize];
+        listing.gains[0] -= i32::from(offered.saved[0]);
+        listing.gains[1] -= i32::from(offered.saved[1]);
     }
 
     pub fn open(&mut self) {
@@ -191,7 +191,7 @@ impl Market {
         (0..self.listings.len() as Number).for_each(|number| self.queue(number));
     }
 
-    #[inline]
+    /// Puts a divisor in the queue where it is not yet, or too low.
     fn queue(&mut self, number: Number) {
         let listing = &mut self.listings[number as usize];
         let gain = listing.gain();
@@ -216,7 +216,7 @@ impl Market {
             if gain == listing.queued {
                 listing.queued = 0;
                 if listing.gain() == gain {
-                    return Some(Best { number, origin: self.origins[number as usize], gain });
+                    return Some(Best { number, origin: listing.origin, gain });
                 }
                 self.queue(number);
             }
@@ -224,19 +224,15 @@ impl Market {
         None
     }
 
-    /// Factors of the first part of a pair.
-    pub fn first(&self, number: Number) -> u16 {
-        self.listings[number as usize].first
-    }
-
-    /// What the occurrences of a divisor save in all.
+    /// What a divisor with a definition of one operation saves in all.
     pub fn saved(&self, key: u64) -> i32 {
-        self.find(key).map_or(0, |number| self.listings[number as usize].saved[0])
+        self.find(key).map_or(0, |number| self.listings[number as usize].gains[0] + 1)
     }
 
-    /// `best` turned out to gain less, since some occurrences overlap.
+    /// `best` turned out to gain less, since some occurrences overlap, so that not all can be replaced.
     pub fn correct(&mut self, best: &Best, gain: i32) {
-        self.listings[best.number as usize].overcount += best.gain - gain;
+        let overcount = best.gain - gain;
+        self.listings[best.number as usize].gains.iter_mut().for_each(|gain| *gain -= overcount);
         self.queue(best.number);
     }
 }
