@@ -116,8 +116,8 @@ pub fn second_derivatives(model: &Model, kernel: Kernel, sum: &Poly) -> Kernel {
     let gradient: Vec<Poly> = q.iter().chain(&qd).chain(&qdd).map(|s| model.ring.derivative(sum, *s)).collect();
     let (by_q, rest) = gradient.split_at(q.len());
     let by_qd = &rest[..q.len()];
-    let (qq, q_qd, q_qdd) = (model.jacobian(by_q, &q), model.jacobian(by_q, &qd), model.jacobian(by_q, &qdd));
-    let qd_qd = model.jacobian(by_qd, &qd);
+    let (qq, q_qd, q_qdd) = (model.hessian(by_q, &q), model.jacobian(by_q, &qd), model.jacobian(by_q, &qdd));
+    let qd_qd = model.hessian(by_qd, &qd);
     kernel
         .vector("gradient", gradient, "∂/∂(q, q̇, q̈)")
         .matrix("q_q", qq, "∂²/∂q∂q")

@@ -174,6 +174,17 @@ impl Model {
         values.iter().map(|v| by.iter().map(|s| self.ring.derivative(v, *s)).collect()).collect()
     }
 
+    /// Matrix of second derivatives, given the first ones.
+    pub fn hessian(&self, gradient: &[Poly], by: &[Var]) -> Vec<Vec<Poly>> {
+        let mut rows: Vec<Vec<Poly>> = Vec::with_capacity(by.len());
+        for (i, first) in gradient.iter().enumerate() {
+            let mut row: Vec<Poly> = rows.iter().map(|above| above[i].clone()).collect();
+            row.extend(by[i..].iter().map(|s| self.ring.derivative(first, *s)));
+            rows.push(row);
+        }
+        rows
+    }
+
     /// The expression with these symbols set to zero.
     pub fn without(&mut self, p: &Poly, symbols: &[Var]) -> Poly {
         let map = symbols.iter().map(|s| (*s, Poly::zero())).collect::<BTreeMap<_, _>>();

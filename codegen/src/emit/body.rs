@@ -149,8 +149,8 @@ impl Body<'_> {
                     bindings.extend(sines.chunks(AT_ONCE).map(|pairs| self.sines_of(pairs)));
                     continue;
                 }
-                Node::Value(s) => format!("let {name} = {};", self.sum(&program.sums[s])),
-                Node::Reciprocal(s) => format!("let {name} = 1.0 / ({});", self.sum(&program.sums[s])),
+                Node::Value(s) => self.sum(&["let ", name, " = "], &program.sums[s], ";"),
+                Node::Reciprocal(s) => self.sum(&["let ", name, " = 1.0 / ("], &program.sums[s], ");"),
             };
             bindings.push(Binding { nodes: vec![*id], text });
         }
@@ -159,7 +159,7 @@ impl Body<'_> {
 
     /// Sines and cosines of the arguments that are these sums.
     fn sines_of(&self, pairs: &[(usize, [Option<Id>; 2])]) -> Binding {
-        let arguments: Vec<_> = pairs.iter().map(|(s, _)| self.sum(&self.function.program.sums[*s])).collect();
+        let arguments: Vec<_> = pairs.iter().map(|(s, _)| self.value(*s)).collect();
         let name = |id: Option<Id>| id.map_or("_", |id| &self.names[id as usize]);
         let values: Vec<_> = pairs.iter().map(|(_, [sin, cos])| format!("({}, {})", name(*sin), name(*cos))).collect();
         let (arguments, values) = (arguments.join(", "), values.join(", "));
@@ -185,15 +185,24 @@ impl Body<'_> {
         last
     }
 
-    fn sum(&self, sum: &Sum) -> String {
+    /// The value of a sum.
+    fn value(&self, sum: usize) -> String {
+        self.sum(&[], &self.function.program.sums[sum], "")
+    }
+
+    /// A sum between what is before and behind it.
+    fn sum(&self, before: &[&str], sum: &Sum, behind: &str) -> String {
+        /// About the length of a term.
+        const TERM: usize = 24;
+        let mut text = String::with_capacity((sum.len() + 1) * TERM);
+        before.iter().for_each(|part| text.push_str(part));
         if sum.is_empty() {
-            return "0.0".into();
+            text.push_str("0.0");
         }
-        let mut text = String::new();
         // Positive terms first spares a negation.
         let first = sum.iter().position(|t| t.coefficient > 0.0).unwrap_or(0);
         let others = sum.iter().enumerate().filter(|(i, _)| *i != first).map(|(_, t)| t);
-        for (k, term) in std::iter::once(&sum[first]).chain(others).enumerate() {
+        for (k, term) in sum.get(first).into_iter().chain(others).enumerate() {
             text.push_str(match (k, term.coefficient < 0.0) {
                 (0, false) => "",
                 (0, true) => "-",
@@ -202,6 +211,7 @@ impl Body<'_> {
             });
             self.product(term, &mut text);
         }
+        text.push_str(behind);
         text
     }
 
@@ -228,9 +238,9 @@ impl Body<'_> {
         let simple = |s: usize| program.sums[s].len() <= 1 && program.sums[s].iter().all(|t| t.cost() == 0);
         let shared: Vec<bool> = (0..count.len()).map(|s| count[s] > 1 && !simple(s)).collect();
         for s in (0..shared.len()).filter(|s| shared[*s]) {
-            line(out, &format!("let out{s} = {};", self.sum(&program.sums[s])), 1);
+            line(out, &self.sum(&["let out", &s.to_string(), " = "], &program.sums[s], ";"), 1);
         }
-        let value = |s: &usize| if shared[*s] { format!("out{s}") } else { self.sum(&program.sums[*s]) };
+        let value = |s: &usize| if shared[*s] { format!("out{s}") } else { self.value(*s) };
         let list = |open: String, sums: &[usize]| Layout::list(open, sums.iter().map(value).map(Layout::Sum), "]");
         let expression = |shape: Shape, label: String, sums: &[usize]| match shape {
             Shape::Scalar => Layout::Sum(label + &value(&sums[0])),

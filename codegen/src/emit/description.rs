@@ -117,7 +117,7 @@ fn limits(l: &Limits, runtime: &str) -> Layout {
 }
 
 fn operations(f: &Function, runtime: &str) -> Layout {
-    let o = f.program.operations();
+    let o = f.operations;
     Layout::record(
         format!("{runtime}::Operations"),
         [

@@ -15,6 +15,7 @@ pub struct Function<'a> {
     pub ring: &'a Ring,
     pub kernel: &'a Kernel,
     pub program: Program,
+    pub operations: Operations,
     /// What it would cost as derived, without factoring.
     pub derived: Operations,
     /// The function itself, and the one for batches where it is wanted.
@@ -35,8 +36,9 @@ pub fn base_name(name: &str) -> (&str, bool) {
 impl Function<'_> {
     pub fn new<'a>(ring: &'a Ring, kernel: &'a Kernel) -> Function<'a> {
         let derived = Program::as_derived(ring, kernel);
-        let (program, derived) = (derived.factored(), derived.operations());
-        let mut function = Function { ring, kernel, program, derived, source: String::new() };
+        let program = derived.factored();
+        let (operations, derived) = (program.operations(), derived.operations());
+        let mut function = Function { ring, kernel, program, operations, derived, source: String::new() };
         function.source = function.written();
         function
     }
@@ -71,7 +73,7 @@ impl Function<'_> {
     }
 
     fn written(&self) -> String {
-        let ops = self.program.operations();
+        let ops = self.operations;
         let mut source = format!(
             "/// {}\n///\n/// Operations: {} additions and multiplications, {} divisions, {} pairs of sine and cosine.\n#[inline]\n",
             self.kernel.doc, ops.flops, ops.divisions, ops.sincos

@@ -216,8 +216,9 @@ impl Body {
     /// How many numbers are measured of a body.
     pub const COUNT: usize = 3 + 1 + 3 + 9;
 
-    fn numbers(&self) -> Vec<f64> {
-        [&self.offset[..], &[self.mass], &self.com, self.inertia.as_flattened()].concat()
+    fn numbers(&self) -> impl Iterator<Item = f64> {
+        let inertia = self.inertia.as_flattened().iter().copied();
+        self.offset.into_iter().chain([self.mass]).chain(self.com).chain(inertia)
     }
 }
 

@@ -11,7 +11,7 @@ use super::divisor::{
 use super::market::{Best, Market, Number, Offered, Origin};
 use super::{Id, Node, Program, Term};
 use smallvec::SmallVec;
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 struct Search<'a> {
     nodes: &'a mut Vec<Node>,
@@ -303,7 +303,7 @@ impl Search<'_> {
 
 /// Sums that became equal are computed once.
 fn merge_equal_sums(program: &mut Program) {
-    let mut known: HashMap<u64, Vec<usize>> = HashMap::new();
+    let mut known: BTreeMap<u64, SmallVec<[usize; 2]>> = BTreeMap::new();
     let mut first = Vec::with_capacity(program.sums.len());
     for (s, sum) in program.sums.iter().enumerate() {
         let hash = sum.iter().fold(0u64, |hash, t| hash.rotate_left(5) ^ hash_of(&t.factors) ^ t.coefficient.to_bits());

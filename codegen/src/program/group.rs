@@ -22,11 +22,11 @@ pub struct Groups(Vec<(Signature, Vec<Member>)>);
 
 impl Groups {
     pub fn new(program: &Program) -> Groups {
-        let of_sum = |(s, sum): (usize, &Sum)| -> Vec<(u64, usize, usize)> {
-            sum.iter().enumerate().map(|(i, t)| (hash_of(&t.factors), s, i)).collect()
-        };
         // Where like terms are: those with equal hashes, sum by sum.
-        let mut terms: Vec<(u64, usize, usize)> = program.sums.iter().enumerate().flat_map(of_sum).collect();
+        let mut terms: Vec<(u64, usize, usize)> = Vec::with_capacity(program.sums.iter().map(Vec::len).sum());
+        for (s, sum) in program.sums.iter().enumerate() {
+            terms.extend(sum.iter().enumerate().map(|(i, t)| (hash_of(&t.factors), s, i)));
+        }
         terms.sort_unstable();
         let term = |(_, s, i): &(u64, usize, usize)| &program.sums[*s][*i];
         let mut groups: BTreeMap<Signature, Vec<Member>> = BTreeMap::new();
@@ -59,7 +59,8 @@ impl Groups {
 
     /// The program with every group of at least `least` members computed once.
     pub fn apply(&self, program: &Program, least: usize) -> Program {
-        let mut result = Program { sums: Vec::new(), ..program.clone() };
+        let (nodes, outputs) = (program.nodes.clone(), program.outputs.clone());
+        let mut result = Program { nodes, sums: Vec::with_capacity(program.sums.len()), outputs };
         let mut gone: Vec<Vec<bool>> = program.sums.iter().map(|sum| vec![false; sum.len()]).collect();
         let mut nodes: Vec<Sum> = vec![Sum::new(); program.sums.len()];
         let mut groups = Vec::new();

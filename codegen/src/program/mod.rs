@@ -174,7 +174,7 @@ impl Program {
     /// Operation counts of the program as it is emitted.
     pub fn operations(&self) -> Operations {
         let mut count = Operations::default();
-        let mut arguments = std::collections::BTreeSet::new();
+        let mut counted = vec![false; self.sums.len()];
         let sum_cost = |s: usize| -> usize {
             let sum = &self.sums[s];
             sum.iter().map(Term::cost).sum::<usize>() + sum.len().saturating_sub(1)
@@ -188,15 +188,19 @@ impl Program {
                     count.divisions += 1;
                 }
                 Node::Sin(s) | Node::Cos(s) => {
-                    if arguments.insert(s) {
+                    if !std::mem::replace(&mut counted[s], true) {
                         count.flops += sum_cost(s);
                         count.sincos += 1;
                     }
                 }
             }
         }
-        let unique: std::collections::BTreeSet<usize> = self.outputs.iter().flatten().copied().collect();
-        count.flops += unique.iter().map(|s| sum_cost(*s)).sum::<usize>();
+        counted.fill(false);
+        for s in self.outputs.iter().flatten() {
+            if !std::mem::replace(&mut counted[*s], true) {
+                count.flops += sum_cost(*s);
+            }
+        }
         count
     }
 

@@ -30,7 +30,7 @@ impl Robot {
         for leg in &self.legs {
             legs.push(lock(leg, angles, &mut platform)?);
         }
-        Ok(Robot { platform, legs, ..self.clone() })
+        Ok(Robot { name: self.name.clone(), gravity: self.gravity, platform, legs })
     }
 }
 
