@@ -179,11 +179,11 @@ fn touchdown(model: &mut Model, leg: usize) -> Kernel {
     let (q, qd) = (model.q(0), model.q(1));
     let Landing { xi, outputs, plus, sum, solution } = Landing::new(model, leg);
     let by_q: Vec<Poly> = q.iter().map(|s| model.ring.derivative(&sum, *s)).collect();
-    let mut block = |by: &[Var]| -> Vec<Vec<Poly>> {
-        let raw = model.jacobian(&by_q, by);
-        raw.iter().map(|row| row.iter().map(|p| model.ring.substitute(p, &solution)).collect()).collect()
+    let raw = [model.hessian(&by_q, &q), model.jacobian(&by_q, &qd), model.jacobian(&by_q, &plus)];
+    let mut insert = |rows: &Vec<Vec<Poly>>| -> Vec<Vec<Poly>> {
+        rows.iter().map(|row| row.iter().map(|p| model.ring.substitute(p, &solution)).collect()).collect()
     };
-    let (qq, q_qd, q_plus) = (block(&q), block(&qd), block(&plus));
+    let [qq, q_qd, q_plus] = raw.each_ref().map(&mut insert);
     Kernel::new(
         format!("touchdown_curvature{}", leg + 1),
         "Second derivatives of a touchdown's results, weighted: q̇⁺ (xi), then impulse, leaving and landing velocity, \

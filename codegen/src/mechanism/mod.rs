@@ -141,12 +141,12 @@ impl Mechanism {
     /// inertia; of each joint the rotor's inertia; of each leg the foot, and of its members their bodies and feet.
     pub fn numbers(&self) -> Vec<f64> {
         let mut numbers = vec![self.gravity];
-        numbers.extend(self.bodies.iter().flat_map(Body::numbers));
+        self.bodies.iter().for_each(|body| numbers.extend(body.numbers()));
         numbers.extend(self.joints.iter().map(|joint| joint.rotor_inertia));
         for leg in &self.legs {
             numbers.extend(leg.foot);
             for member in &leg.members {
-                numbers.extend(member.bodies.iter().flat_map(Body::numbers));
+                member.bodies.iter().for_each(|body| numbers.extend(body.numbers()));
                 numbers.extend(member.foot);
             }
         }
@@ -216,9 +216,9 @@ impl Body {
     /// How many numbers are measured of a body.
     pub const COUNT: usize = 3 + 1 + 3 + 9;
 
-    fn numbers(&self) -> impl Iterator<Item = f64> {
-        let inertia = self.inertia.as_flattened().iter().copied();
-        self.offset.into_iter().chain([self.mass]).chain(self.com).chain(inertia)
+    fn numbers(&self) -> [f64; Body::COUNT] {
+        let ([x, y, z], [u, v, w], [a, b, c]) = (self.offset, self.com, self.inertia);
+        [x, y, z, self.mass, u, v, w, a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]]
     }
 }
 

@@ -8,7 +8,7 @@
 use super::divisor::{
     Divisor, Factors, Item, Pair, cost, exact, hash_of, hash_of_node, marks_of, rounded, scaled_key, without,
 };
-use super::market::{Best, Market, Number, Offered, Origin};
+use super::market::{Best, Market, Offered, Origin};
 use super::{Id, Node, Program, Term};
 use smallvec::SmallVec;
 use std::collections::BTreeMap;
@@ -27,8 +27,6 @@ struct Search<'a> {
     /// The hashes of the factors of the term at hand, and by nodes, with a zero for those that it has not.
     own: Vec<u64>,
     hashes: Vec<u64>,
-    /// What the term at hand and others of its sum offer, and which divisors these probably are.
-    with_older: Vec<(Pair, Number)>,
     /// Where the divisor at hand occurs.
     found: Vec<Rewrite>,
 }
@@ -68,7 +66,6 @@ pub fn factor(program: &mut Program) {
         places: vec![SmallVec::new(); program.nodes.len()],
         hashes: vec![0; program.nodes.len()],
         own: Vec::new(),
-        with_older: Vec::new(),
         found: Vec::new(),
         nodes: &mut program.nodes,
         terms: Vec::new(),
@@ -107,25 +104,21 @@ impl Search<'_> {
 
         let row = self.offered.len();
         item.divisors(factors, &self.own, term, |key, times, origin| {
-            let guess = self.market.guess(key);
-            self.offered.push(self.market.add(key, guess, [times; 2], || (origin, [1; 2])));
+            self.offered.push(self.market.add(key, [times; 2], || (origin, [1; 2])));
         });
         let pairs = self.offered.len();
         factors.iter().zip(&self.own).for_each(|(id, hash)| self.hashes[*id as usize] = *hash);
-        self.with_older.clear();
-        self.with_older.extend(entries.iter().map(|Entry { item: older, .. }| {
-            let shared = item.shared(factors, &self.hashes, older, older.factors(older_factors));
-            let pair = Pair::new(older, &item, shared);
-            (pair, self.market.guess(pair.key))
-        }));
-        factors.iter().for_each(|id| self.hashes[*id as usize] = 0);
         let slots = entries.len() + vacant.len();
         self.offered.resize(pairs + slots, Offered::default());
-        for (older, (pair, guess)) in entries.iter().zip(&self.with_older) {
+        let with_older = &mut self.offered[pairs..];
+        for older in entries.iter() {
+            let factors_of_older = older.item.factors(older_factors);
+            let shared = item.shared(factors, &self.hashes, &older.item, factors_of_older);
+            let pair = Pair::new(&older.item, &item, shared);
             let new = || (pair.origin(older.term, term), pair.cost(&older.item, &item));
-            let offered = self.market.add(pair.key, *guess, pair.saved(&older.item, &item), new);
-            self.offered[pairs + older.slot as usize] = offered;
+            with_older[older.slot as usize] = self.market.add(pair.key, pair.saved(&older.item, &item), new);
         }
+        factors.iter().for_each(|id| self.hashes[*id as usize] = 0);
 
         let slot = vacant.pop().unwrap_or(slots as u32);
         entries.push(Entry { item, term, slot, row: row as u32, pairs: pairs as u32 });

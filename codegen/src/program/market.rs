@@ -130,28 +130,17 @@ impl Market {
         (number != VACANT).then_some(number)
     }
 
-    /// The number of the divisor that probably has this key, for many of which to ask before they are added.
-    #[inline]
-    pub fn guess(&self, key: u64) -> Number {
-        let (half, number) = self.table[key as usize & (self.table.len() - 1)];
-        if half == (key >> 32) as u32 { number } else { VACANT }
-    }
-
-    /// Adds an occurrence, of the divisor `guess` if that has its key. `saved` is what it saves to replace it, for
+    /// Adds an occurrence. `saved` is what it saves to replace it, for
     /// either choice of the coefficient that is 1; `new` tells where it was seen and the operations that a definition
     /// costs, again for either choice, if it is a new one.
     #[inline]
     pub fn add(
         &mut self,
         key: u64,
-        guess: Number,
         saved: [i16; 2],
         new: impl FnOnce() -> (Origin, [i16; 2]),
     ) -> Offered {
-        let number = match self.listings.get(guess as usize) {
-            Some(listing) if listing.key == key => guess,
-            _ => self.number(key, new),
-        };
+        let number = self.number(key, new);
         let listing = &mut self.listings[number as usize];
         listing.gains[0] += i32::from(saved[0]);
         listing.gains[1] += i32::from(saved[1]);
