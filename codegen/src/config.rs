@@ -3,8 +3,8 @@
 use crate::emit;
 use crate::mechanism::{Family, Mechanism, Whole, levers, select};
 use crate::spec::{self, Diagnostic, Gait, Robot};
+use crate::turns::in_turn;
 use crate::typeset::latex;
-use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
@@ -173,14 +173,13 @@ pub fn generate(robots: &[RobotFiles], runtime: Option<&str>) -> Result<Vec<Gene
     let parsed = parse(robots)?;
     let gait_file = |robot: &Parsed, gait: &Gait, origin: &str| {
         let (module, mechanism) = (&robot.files.module, Mechanism::new(&locked(&robot.spec, &gait.locked)?, gait));
-        let latex = latex(&robot.spec, gait, &mechanism);
+        let beside = || (levers(&robot.spec, gait), latex(&robot.spec, gait, &mechanism));
         let whole = robot.wholes().iter().position(|angles| **angles == gait.locked).unwrap_or_default();
         let source = emit::gait_source(
             &mechanism,
-            &levers(&robot.spec, gait),
+            beside,
             module,
             &emit::whole_module(whole),
-            &latex,
             runtime,
             origin,
         );
@@ -191,12 +190,14 @@ pub fn generate(robots: &[RobotFiles], runtime: Option<&str>) -> Result<Vec<Gene
         let source = emit::whole_source(&whole, runtime, &origin(&[&robot.files.robot]));
         Ok((emit::whole_file_name(&robot.files.module, number), source))
     };
-    let mut jobs = for_each_gait(&parsed, &gait_file);
+    // Whole robots first: they have the kernel that takes longest.
+    let mut jobs: Vec<Job> = Vec::new();
     for robot in &parsed {
         for (number, angles) in robot.wholes().into_iter().enumerate() {
             jobs.push(Box::new(move || whole_file(robot, number, angles)));
         }
     }
+    jobs.extend(for_each_gait(&parsed, &gait_file));
     let mut files = together(jobs)?;
     let wholes: Vec<usize> = parsed.iter().map(|robot| robot.wholes().len()).collect();
     let registry = emit::registry_source(&modules(&parsed), &wholes, runtime, &origin_of_all(robots));
@@ -296,8 +297,7 @@ fn for_each_gait<'j>(
 
 /// The files, in order; the first mistake if there is any.
 fn together(jobs: Vec<Job>) -> Result<Vec<Generated>, String> {
-    let made: Vec<_> = jobs.into_par_iter().with_max_len(1).map(|job| job()).collect();
-    made.into_iter().collect()
+    in_turn(jobs, |_| (), |job| job()).into_iter().collect()
 }
 
 /// Names of the robots' modules and of their gaits.

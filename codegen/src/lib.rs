@@ -15,6 +15,7 @@ pub mod expr;
 pub mod mechanism;
 pub mod program;
 pub mod spec;
+mod turns;
 pub mod typeset;
 
 pub use config::{Config, Generated, RobotFiles, SpecFile, generate, generate_families};

@@ -43,6 +43,11 @@ impl Kernel {
         Kernel { name: name.into(), doc: doc.into(), inputs: Vec::new(), outputs: Vec::new(), batched: false }
     }
 
+    /// Pairs of terms in its sums, about: what the time to factor it goes by.
+    pub fn pairs(&self) -> usize {
+        self.outputs.iter().flat_map(|output| &output.values).map(|sum| sum.len() * sum.len()).sum()
+    }
+
     pub fn batched(self) -> Kernel {
         Kernel { batched: true, ..self }
     }

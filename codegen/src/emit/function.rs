@@ -6,7 +6,8 @@ use super::{batch, type_name};
 use crate::dynamics::{Kernel, Shape};
 use crate::expr::Ring;
 use crate::program::{Operations, Program};
-use rayon::prelude::*;
+use crate::turns::in_turn;
+use std::cmp::Reverse;
 use std::fmt::Write;
 
 /// A kernel with its program, ready to be written.
@@ -24,7 +25,7 @@ pub struct Function<'a> {
 
 /// A function for each kernel, in order.
 pub fn functions<'a>(ring: &'a Ring, kernels: &'a [Kernel]) -> Vec<Function<'a>> {
-    kernels.par_iter().with_max_len(1).map(|kernel| Function::new(ring, kernel)).collect()
+    in_turn(kernels, |kernel| Reverse(kernel.pairs()), |kernel| Function::new(ring, kernel))
 }
 
 /// `inverse_jacobian2` → (`inverse_jacobian`, true): leg kernels end in the leg's number.

@@ -10,23 +10,23 @@ use crate::mechanism::{Lever, Mechanism};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Source of one gait's module, of a robot with or without a module of its own; `whole` is the module of the whole
-/// robot. `latex` are the gait's closed forms, `runtime` is the path of the module with the `Gait` trait; without it there are functions only.
+/// robot. `beside` gives the gait's levers and its closed forms as LaTeX, `runtime` is the path of the module with the
+/// `Gait` trait; without it there are functions only.
 pub fn gait_source(
     mechanism: &Mechanism,
-    levers: &[Lever],
+    beside: impl FnOnce() -> (Vec<Lever>, String) + Send,
     robot: &str,
     whole: &str,
-    latex: &str,
     runtime: Option<&str>,
     origin: &str,
 ) -> String {
     let (model, kernels) = kernels(mechanism);
-    let functions = functions(&model.ring, &kernels);
+    let (functions, (levers, latex)) = rayon::join(|| functions(&model.ring, &kernels), beside);
     let mut source = header(origin);
     source += &items(&functions);
     if let Some(runtime) = runtime {
         let key = key(robot, &mechanism.gait);
-        source += &implementation(mechanism, levers, &key, whole, &functions, latex, runtime);
+        source += &implementation(mechanism, &levers, &key, whole, &functions, &latex, runtime);
     }
     source
 }

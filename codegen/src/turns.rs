@@ -1,0 +1,18 @@
+//! Work that threads share.
+
+use rayon::prelude::*;
+
+/// What `make` makes of each item, in the items' order. Threads take them one by one in the order of `key`: with what
+/// takes longest first, none is left with it in the end.
+pub fn in_turn<T: Send, K: Ord, R: Send>(
+    items: impl IntoIterator<Item = T>,
+    key: impl Fn(&T) -> K,
+    make: impl Fn(T) -> R + Sync,
+) -> Vec<R> {
+    let mut turns: Vec<(usize, T)> = items.into_iter().enumerate().collect();
+    turns.sort_by_key(|(_, item)| key(item));
+    let mut made: Vec<(usize, R)> =
+        turns.into_iter().par_bridge().map(|(place, item)| (place, make(item))).collect();
+    made.sort_unstable_by_key(|(place, _)| *place);
+    made.into_iter().map(|(_, result)| result).collect()
+}
