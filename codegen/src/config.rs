@@ -297,7 +297,7 @@ fn for_each_gait<'j>(
 
 /// The files, in order; the first mistake if there is any.
 fn together(jobs: Vec<Job>) -> Result<Vec<Generated>, String> {
-    in_turn(jobs, |_| (), |job| job()).into_iter().collect()
+    in_turn(jobs, |_| (), || (), |_, job| job()).into_iter().collect()
 }
 
 /// Names of the robots' modules and of their gaits.

@@ -8,12 +8,15 @@ use super::modules::{file_name, key, paths, tree};
 use super::type_name;
 use crate::dynamics::family_kernels;
 use crate::mechanism::{Family, Parameter, Sign};
+use crate::program::Search;
 
 /// Source of the module of one gait of a family. `runtime` is the path of the module with the `Gait` trait.
 pub fn family_source(family: &Family, robot: &str, latex: &str, runtime: &str, origin: &str) -> String {
     let (model, kernels) = family_kernels(family);
     let (gait, sensitivity) = (functions(&model.ring, &kernels.gait), functions(&model.ring, &kernels.sensitivity));
-    let [numbers, lumps, jacobian] = kernels.parameters.each_ref().map(|k| Function::new(&model.ring, k));
+    let mut search = Search::default();
+    let [numbers, lumps, jacobian] =
+        kernels.parameters.each_ref().map(|kernel| Function::new(&model.ring, kernel, &mut search));
     let m = &family.mechanism;
     let name = type_name(&m.gait);
     let (lump_count, parameter_count) = (lumps.kernel.outputs[0].values.len(), family.parameters.len());

@@ -5,7 +5,7 @@ use super::layout::{Layout, indent, line};
 use super::{batch, type_name};
 use crate::dynamics::{Kernel, Shape};
 use crate::expr::Ring;
-use crate::program::{Operations, Program};
+use crate::program::{Operations, Program, Search};
 use crate::turns::in_turn;
 use std::cmp::Reverse;
 use std::fmt::Write;
@@ -25,7 +25,8 @@ pub struct Function<'a> {
 
 /// A function for each kernel, in order.
 pub fn functions<'a>(ring: &'a Ring, kernels: &'a [Kernel]) -> Vec<Function<'a>> {
-    in_turn(kernels, |kernel| Reverse(kernel.pairs()), |kernel| Function::new(ring, kernel))
+    let make = |search: &mut Search, kernel| Function::new(ring, kernel, search);
+    in_turn(kernels, |kernel| Reverse(kernel.pairs()), Search::default, make)
 }
 
 /// `inverse_jacobian2` → (`inverse_jacobian`, true): leg kernels end in the leg's number.
@@ -35,9 +36,9 @@ pub fn base_name(name: &str) -> (&str, bool) {
 }
 
 impl Function<'_> {
-    pub fn new<'a>(ring: &'a Ring, kernel: &'a Kernel) -> Function<'a> {
+    pub fn new<'a>(ring: &'a Ring, kernel: &'a Kernel, search: &mut Search) -> Function<'a> {
         let derived = Program::as_derived(ring, kernel);
-        let program = derived.factored();
+        let program = derived.factored(search);
         let (operations, derived) = (program.operations(), derived.operations());
         let mut function = Function { ring, kernel, program, operations, derived, source: String::new() };
         function.source = function.written();

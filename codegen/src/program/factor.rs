@@ -13,8 +13,10 @@ use super::{Id, Node, Program, Term};
 use smallvec::SmallVec;
 use std::collections::BTreeMap;
 
-struct Search<'a> {
-    nodes: &'a mut Vec<Node>,
+/// The search for divisors in the sums of a program. Who factors several programs keeps it: its memory is used again.
+#[derive(Default)]
+pub struct Search {
+    nodes: Vec<Node>,
     /// All terms there ever were, and their factors one after another.
     terms: Vec<Item>,
     factors: Vec<Id>,
@@ -59,38 +61,44 @@ struct Rewrite {
     factors: Factors,
 }
 
-/// Rewrites the sums of `program` over shared new nodes.
-pub fn factor(program: &mut Program) {
-    let pairs = program.sums.iter().map(|s| s.len() * s.len() / 2).sum();
-    let mut search = Search {
-        places: vec![SmallVec::new(); program.nodes.len()],
-        hashes: vec![0; program.nodes.len()],
-        own: Vec::new(),
-        found: Vec::new(),
-        nodes: &mut program.nodes,
-        terms: Vec::new(),
-        factors: Vec::new(),
-        sums: program.sums.iter().map(|s| Sum { entries: Vec::with_capacity(s.len()), ..Sum::default() }).collect(),
-        offered: Vec::with_capacity(6 * pairs),
-        market: Market::new(pairs),
-    };
-    for (sum, terms) in program.sums.iter().enumerate() {
-        terms.iter().for_each(|t| search.insert(sum, t.coefficient, &t.factors));
+impl Search {
+    /// Rewrites the sums of `program` over shared new nodes.
+    pub fn factor(&mut self, program: &mut Program) {
+        self.begin(program);
+        for (sum, terms) in program.sums.iter().enumerate() {
+            terms.iter().for_each(|t| self.insert(sum, t.coefficient, &t.factors));
+        }
+        self.market.open();
+        while let Some(best) = self.market.best() {
+            self.extract(&best);
+        }
+        program.nodes = std::mem::take(&mut self.nodes);
+        let term = |Entry { item, .. }: &Entry| Term {
+            coefficient: item.coefficient,
+            factors: Factors::from_slice(item.factors(&self.factors)),
+        };
+        program.sums = self.sums.iter().map(|sum| sum.entries.iter().map(term).collect()).collect();
+        program.sums.iter_mut().for_each(|sum| sum.sort_by(|a, b| a.factors.cmp(&b.factors)));
+        merge_equal_sums(program);
     }
-    search.market.open();
-    while let Some(best) = search.market.best() {
-        search.extract(&best);
-    }
-    let term = |Entry { item, .. }: &Entry| Term {
-        coefficient: item.coefficient,
-        factors: Factors::from_slice(item.factors(&search.factors)),
-    };
-    program.sums = search.sums.iter().map(|sum| sum.entries.iter().map(term).collect()).collect();
-    program.sums.iter_mut().for_each(|sum| sum.sort_by(|a, b| a.factors.cmp(&b.factors)));
-    merge_equal_sums(program);
-}
 
-impl Search<'_> {
+    /// Empties all, with room for this program.
+    fn begin(&mut self, program: &mut Program) {
+        self.nodes = std::mem::take(&mut program.nodes);
+        self.terms.clear();
+        self.factors.clear();
+        self.sums.clear();
+        self.sums.extend(program.sums.iter().map(|s| Sum { entries: Vec::with_capacity(s.len()), vacant: Vec::new() }));
+        let pairs = program.sums.iter().map(|s| s.len() * s.len() / 2).sum();
+        self.offered.clear();
+        self.offered.reserve(6 * pairs);
+        self.places.clear();
+        self.places.resize_with(self.nodes.len(), SmallVec::new);
+        self.hashes.clear();
+        self.hashes.resize(self.nodes.len(), 0);
+        self.market.begin(pairs);
+    }
+
     /// Adds a term to a sum, with all that it offers.
     fn insert(&mut self, sum: usize, coefficient: f64, factors: &[Id]) {
         let (term, start) = (self.terms.len() as u32, self.factors.len());

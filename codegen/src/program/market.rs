@@ -81,6 +81,7 @@ impl Level {
 }
 
 /// All divisors that the sums offer.
+#[derive(Default)]
 pub struct Market {
     listings: Vec<Listing>,
     /// Open addressing: half a key and the divisor's number; the length is a power of two.
@@ -94,10 +95,14 @@ pub struct Market {
 const VACANT: Number = Number::MAX;
 
 impl Market {
-    /// A market with room for about so many divisors, and as many again that come from rewriting.
-    pub fn new(room: usize) -> Market {
-        let table = vec![(0, VACANT); (room + room / 4).next_power_of_two().max(64)];
-        Market { listings: Vec::with_capacity(2 * room), table, queue: Vec::new(), open: false }
+    /// Closes and empties it, with room for about so many divisors and as many again that come from rewriting.
+    pub fn begin(&mut self, room: usize) {
+        self.listings.clear();
+        self.listings.reserve(2 * room);
+        self.table.clear();
+        self.table.resize((room + room / 4).next_power_of_two().max(64), (0, VACANT));
+        self.queue.clear();
+        self.open = false;
     }
 
     /// The place of `key` or where it belongs.

@@ -6,7 +6,7 @@ mod group;
 mod lower;
 mod market;
 
-pub use factor::factor;
+pub use factor::Search;
 
 use crate::dynamics::Kernel;
 use crate::expr::Ring;
@@ -93,7 +93,7 @@ const PAIRS: usize = 3_000;
 impl Program {
     /// Lowers a kernel and factors it.
     pub fn new(ring: &Ring, kernel: &Kernel) -> Program {
-        Program::as_derived(ring, kernel).factored()
+        Program::as_derived(ring, kernel).factored(&mut Search::default())
     }
 
     /// Lowers a kernel as it was derived: what is factored from it is measured against this.
@@ -102,7 +102,7 @@ impl Program {
     }
 
     /// Factors it in several ways; the one with the fewest operations stays.
-    pub fn factored(&self) -> Program {
+    pub fn factored(&self, search: &mut Search) -> Program {
         let groups = Groups::new(self);
         let mut tried = Vec::new();
         let mut pairs = 0;
@@ -119,7 +119,7 @@ impl Program {
             }
             pairs += more;
             let mut program = groups.apply(self, least);
-            factor(&mut program);
+            search.factor(&mut program);
             let flops = program.operations().flops;
             if best.as_ref().is_none_or(|(least, _)| flops < *least) {
                 best = Some((flops, program));
