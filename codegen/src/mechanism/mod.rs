@@ -140,7 +140,10 @@ impl Mechanism {
     /// Everything that is measured, in one fixed order: gravity; of each body offset, mass, mass centre and
     /// inertia; of each joint the rotor's inertia; of each leg the foot, and of its members their bodies and feet.
     pub fn numbers(&self) -> Vec<f64> {
-        let mut numbers = vec![self.gravity];
+        let members = self.legs.iter().flat_map(|leg| &leg.members);
+        let bodies = self.bodies.len() + members.map(|member| member.bodies.len()).sum::<usize>();
+        let mut numbers = Vec::with_capacity((bodies + 1) * Body::COUNT);
+        numbers.push(self.gravity);
         self.bodies.iter().for_each(|body| numbers.extend(body.numbers()));
         numbers.extend(self.joints.iter().map(|joint| joint.rotor_inertia));
         for leg in &self.legs {

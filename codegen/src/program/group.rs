@@ -81,7 +81,9 @@ impl Groups {
         }
         for ((terms, gone), nodes) in program.sums.iter().zip(gone).zip(nodes) {
             let kept = terms.iter().zip(gone).filter(|(_, gone)| !gone).map(|(term, _)| term.clone());
-            result.sums.push(kept.chain(nodes).collect());
+            let mut sum = Sum::with_capacity(terms.len() + nodes.len());
+            sum.extend(kept.chain(nodes));
+            result.sums.push(sum);
         }
         result.sums.extend(groups);
         result

@@ -59,6 +59,12 @@ struct Level {
 }
 
 impl Level {
+    fn clear(&mut self) {
+        self.sorted.clear();
+        self.taken = 0;
+        self.others.clear();
+    }
+
     fn push(&mut self, number: Number) {
         if self.sorted.last().is_none_or(|last| *last < number) {
             self.sorted.push(number);
@@ -86,8 +92,9 @@ pub struct Market {
     listings: Vec<Listing>,
     /// Open addressing: half a key and the divisor's number; the length is a power of two.
     table: Vec<(u32, Number)>,
-    /// The divisors of each gain. Gains may be out of date: too high, never too low.
+    /// The divisors of each gain, up to the highest one. Gains may be out of date: too high, never too low.
     queue: Vec<Level>,
+    highest: usize,
     /// Whether the queue is kept up to date.
     open: bool,
 }
@@ -101,7 +108,7 @@ impl Market {
         self.listings.reserve(2 * room);
         self.table.clear();
         self.table.resize((room + room / 4).next_power_of_two().max(64), (0, VACANT));
-        self.queue.clear();
+        self.queue.iter_mut().for_each(Level::clear);
         self.open = false;
     }
 
@@ -196,16 +203,18 @@ impl Market {
                 self.queue.resize_with(gain + 1, Level::default);
             }
             self.queue[gain].push(number);
+            self.highest = self.highest.max(gain);
         }
     }
 
     /// The divisor that saves most, the oldest of these.
     pub fn best(&mut self) -> Option<Best> {
-        while let (gain, Some(highest)) = (self.queue.len() as i32 - 1, self.queue.last_mut()) {
-            let Some(number) = highest.pop() else {
-                self.queue.pop();
+        while self.highest > 0 {
+            let Some(number) = self.queue[self.highest].pop() else {
+                self.highest -= 1;
                 continue;
             };
+            let gain = self.highest as i32;
             let listing = &mut self.listings[number as usize];
             if gain == listing.queued {
                 listing.queued = 0;

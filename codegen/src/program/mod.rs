@@ -130,7 +130,7 @@ impl Program {
 
     /// Nodes in an order in which each comes after all that it needs; unused ones are left out.
     pub fn schedule(&self) -> Vec<Id> {
-        let mut order = Vec::new();
+        let mut order = Vec::with_capacity(self.nodes.len());
         let mut state = vec![false; self.nodes.len()];
         for sum in self.outputs.iter().flatten() {
             self.visit_sum(*sum, &mut state, &mut order);
@@ -140,7 +140,7 @@ impl Program {
 
     /// The same with all sines and cosines side by side, as early as their angles are known.
     pub fn schedule_sines_first(&self) -> Vec<Id> {
-        let mut order = Vec::new();
+        let mut order = Vec::with_capacity(self.nodes.len());
         let mut state = vec![false; self.nodes.len()];
         let is_sine = |id: &Id| matches!(self.nodes[*id as usize], Node::Sin(_) | Node::Cos(_));
         let sines: Vec<Id> = self.schedule().into_iter().filter(is_sine).collect();
