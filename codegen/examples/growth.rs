@@ -46,7 +46,7 @@ fn row(links: usize) -> String {
         kernels.iter().map(|k| (k.name.as_str(), Program::new(&model.ring, k).operations().flops)).collect();
     let factor = processor_time() - start - derive;
     let start = processor_time();
-    let source = gait_source(&mechanism, &[], "chain", "whole", "", None, "growth");
+    let source = gait_source(&mechanism, || (Vec::new(), String::new()), "chain", "whole", None, "growth");
     let all = processor_time() - start;
     let files = RobotFiles { module: "chain".into(), robot, gaits: vec![gait] };
     let files = generate(&[files], None).expect("the chain is generated");

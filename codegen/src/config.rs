@@ -175,14 +175,7 @@ pub fn generate(robots: &[RobotFiles], runtime: Option<&str>) -> Result<Vec<Gene
         let (module, mechanism) = (&robot.files.module, Mechanism::new(&locked(&robot.spec, &gait.locked)?, gait));
         let beside = || (levers(&robot.spec, gait), latex(&robot.spec, gait, &mechanism));
         let whole = robot.wholes().iter().position(|angles| **angles == gait.locked).unwrap_or_default();
-        let source = emit::gait_source(
-            &mechanism,
-            beside,
-            module,
-            &emit::whole_module(whole),
-            runtime,
-            origin,
-        );
+        let source = emit::gait_source(&mechanism, beside, module, &emit::whole_module(whole), runtime, origin);
         Ok((emit::file_name(module, &gait.name), source))
     };
     let whole_file = |robot: &Parsed, number: usize, angles: &Angles| {

@@ -4,8 +4,8 @@
 //! product is the sum of its factors' hashes, so that a quotient's is a difference. Where a hash
 //! decides about a rewriting, the factors themselves are compared too.
 
-use super::market::Origin;
 use super::Id;
+use super::market::Origin;
 use smallvec::SmallVec;
 
 pub type Factors = SmallVec<[Id; 6]>;

@@ -146,12 +146,7 @@ impl Market {
     /// either choice of the coefficient that is 1; `new` tells where it was seen and the operations that a definition
     /// costs, again for either choice, if it is a new one.
     #[inline]
-    pub fn add(
-        &mut self,
-        key: u64,
-        saved: [i16; 2],
-        new: impl FnOnce() -> (Origin, [i16; 2]),
-    ) -> Offered {
+    pub fn add(&mut self, key: u64, saved: [i16; 2], new: impl FnOnce() -> (Origin, [i16; 2])) -> Offered {
         let number = self.number(key, new);
         let listing = &mut self.listings[number as usize];
         listing.gains[0] += i32::from(saved[0]);
