@@ -8,7 +8,8 @@ use piaffe::search::multi_start::{Settings, search_from};
 fn main() {
     let mut before: Vec<Vec<f64>> = Vec::new();
     for speed in [0.3, 0.45, 0.6, 0.75, 0.9] {
-        let found = search_from(&Trot, Criterion::Energy, speed, &Settings { starts: 2, seed: 1 }, &before, &|_| {});
+        let found =
+            search_from(&Trot, Criterion::Energy, speed, &Settings { starts: Some(2), seed: 1 }, &before, &|_| {});
         let Some(best) = found.optima.first() else {
             println!("{speed} m/s: no trot");
             continue;

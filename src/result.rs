@@ -6,6 +6,7 @@ use crate::four_legs::RealLegs;
 use crate::model::Gait;
 use crate::motion::{Costs, Criterion, HalfStep, Motion};
 use crate::optimality::{Optimality, optimality};
+use crate::search::evidence::Effort;
 use crate::search::local::Local;
 use crate::search::multi_start::Found;
 use crate::sensitivity::Sensitivities;
@@ -135,14 +136,15 @@ pub struct ConflictEntry {
 pub struct LocalOptimum {
     pub cost: f64,
     pub durations: Vec<f64>,
-    /// How many starts led to it.
+    /// How many starts that knew of no optimum led to it.
     pub reached: usize,
 }
 
-/// How the search was set up.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// How widely the search has looked.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SearchEntry {
-    pub starts: usize,
+    #[serde(flatten)]
+    pub effort: Effort,
     pub seed: u64,
 }
 
@@ -165,7 +167,7 @@ impl GaitResult {
         seed: u64,
         seconds: impl Fn() -> f64,
     ) -> GaitResult {
-        let mut result = GaitResult::empty(gait, criterion, speed, SearchEntry { starts: found.starts, seed });
+        let mut result = GaitResult::empty(gait, criterion, speed, SearchEntry { effort: found.effort, seed });
         for optimum in &found.optima {
             let mut candidate = GaitResult::empty(gait, criterion, speed, result.search);
             candidate.take(gait, &optimum.local);
@@ -198,7 +200,7 @@ impl GaitResult {
     ) -> Result<GaitResult, VerifyError> {
         let receipt = verify(gait.description(), motion, speed, GRID)?;
         let residual = optimality(gait, criterion, speed, motion).map_or(f64::MAX, |found| found.residual());
-        let mut result = GaitResult::empty(gait, criterion, speed, SearchEntry { starts: 0, seed: 0 });
+        let mut result = GaitResult::empty(gait, criterion, speed, SearchEntry::default());
         result.accept(motion, receipt, residual);
         result.examine(gait);
         Ok(result)
@@ -247,7 +249,7 @@ impl GaitResult {
         let mut candidate = GaitResult::empty(gait, self.criterion, self.speed, self.search);
         candidate.take(gait, local);
         let Some(cost) = candidate.cost else { return false };
-        let new = LocalOptimum { cost, durations: candidate.durations.clone(), reached: 1 };
+        let new = LocalOptimum { cost, durations: candidate.durations.clone(), reached: 0 };
         if self.local_optima.iter().any(|known| known.same(&new)) {
             return false;
         }

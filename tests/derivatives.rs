@@ -30,7 +30,7 @@ fn check(gait: &dyn Gait, criterion: Criterion, seed: u64) {
     let mut values = Values::zeros(cycle.equalities(), cycle.inequalities());
     // Not every drawn walk exists: the first that does is used.
     let theta = loop {
-        let plan = Plan::random(gait.description(), &mut rng);
+        let plan = Plan::random(gait, &mut rng);
         let theta = cycle.theta(&walk(gait, &plan, speed));
         if cycle.evaluate(&theta, &mut values).is_ok() {
             break theta;
@@ -145,7 +145,7 @@ fn the_hessian_of_the_lagrangian_agrees_with_differences_of_its_gradient() {
             let mut cycle = Cycle::new(gait, criterion, 0.6);
             let mut values = Values::zeros(cycle.equalities(), cycle.inequalities());
             let theta = loop {
-                let plan = Plan::random(d, &mut rng);
+                let plan = Plan::random(gait, &mut rng);
                 let theta = cycle.theta(&walk(gait, &plan, 0.6));
                 if cycle.evaluate(&theta, &mut values).is_ok() {
                     break theta;

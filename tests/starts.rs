@@ -6,6 +6,7 @@ use piaffe::gaits::GAITS;
 use piaffe::model::Gait;
 use piaffe::motion::Criterion;
 use piaffe::result::{GaitResult, Status};
+use piaffe::search::evidence::Effort;
 use piaffe::search::local::{Local, Task};
 use piaffe::search::multi_start::{Found, Optimum, start};
 use piaffe::sqp::Control;
@@ -21,7 +22,7 @@ const FEW: f64 = 0.04;
 fn result(gait: &dyn Gait, criterion: Criterion, local: &Local) -> GaitResult {
     let optimal = local.status.is_optimal();
     let optima = optimal.then(|| Optimum { local: local.clone(), reached: 1 }).into_iter().collect();
-    let found = Found { optima, failure: (!optimal).then(|| local.clone()), starts: 1 };
+    let found = Found { optima, failure: (!optimal).then(|| local.clone()), effort: Effort::default() };
     GaitResult::new(gait, criterion, SPEED, &found, 1, || 0.0)
 }
 

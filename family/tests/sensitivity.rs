@@ -17,7 +17,7 @@ fn slopes_are_those_of_optima_of_other_robots() {
     for (family, criterion) in FAMILIES.iter().flat_map(|f| Criterion::ALL.map(|c| (f, c))) {
         let key = family.description.key;
         let gait = *GAITS.iter().find(|g| g.description().key == key).unwrap();
-        let found = search(gait, criterion, SPEED, &Settings { starts: 2, seed: 1 }, &|_| {});
+        let found = search(gait, criterion, SPEED, &Settings { starts: Some(2), seed: 1 }, &|_| {});
         let near: &Local = &found.optima[0].local;
         let best = near.costs.of(criterion);
         let cost = |names: &[String], value: f64| {

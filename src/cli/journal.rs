@@ -122,7 +122,7 @@ const RUN: &str = "run";
 #[derive(PartialEq, Serialize, Deserialize)]
 struct Run {
     version: String,
-    starts: usize,
+    starts: Option<usize>,
     seed: u64,
     /// Of the gaits that this run or one before was about.
     fingerprints: BTreeMap<String, String>,
@@ -142,7 +142,8 @@ impl Run {
             list.push(format!("version {} (now {})", earlier.version, self.version));
         }
         if self.starts != earlier.starts {
-            list.push(format!("--starts {} (now {})", earlier.starts, self.starts));
+            let number = |starts: Option<usize>| starts.map_or("as many as needed".into(), |n| n.to_string());
+            list.push(format!("--starts {} (now {})", number(earlier.starts), number(self.starts)));
         }
         if self.seed != earlier.seed {
             list.push(format!("--seed {} (now {})", earlier.seed, self.seed));

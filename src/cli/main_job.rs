@@ -51,12 +51,13 @@ pub fn run(folder: &Path) -> anyhow::Result<bool> {
     // In the order of the paper.
     let mut gaits: Vec<_> = first_robot().collect();
     gaits.sort_by_key(|g| PUBLISHED.iter().position(|p| p.gait == g.description().gait));
-    let bar = progress((gaits.len() * Criterion::ALL.len() * settings.starts) as u64, "starts");
+    let bar = progress(settings.starts);
+    let searches = gaits.len() * Criterion::ALL.len();
     let mut results = Vec::new();
     for criterion in Criterion::ALL {
         for gait in &gaits {
             let name = gait.description().gait;
-            bar.set_message(format!("{name}, {}", criterion.name()));
+            bar.set_message(format!("{name}, {} ({} of {searches})", criterion.name(), results.len() + 1));
             let mut result = solve(Task { gait: *gait, criterion, speed: SPEED }, &[], &settings, &bar);
             result.examine(*gait);
             output::write_json(&folder.join(format!("{name}-{}.json", criterion.name())), &result)?;
@@ -65,9 +66,11 @@ pub fn run(folder: &Path) -> anyhow::Result<bool> {
         }
     }
     bar.finish_and_clear();
+    let starts = || results.iter().map(|r| r.search.effort.starts);
+    let (fewest, most) = (starts().min().unwrap_or(0), starts().max().unwrap_or(0));
+    let starts = if fewest == most { most.to_string() } else { format!("{fewest} to {most}") };
     output::say!(
-        "\nEvery optimum is local: the best of {} starts. The paper does not give all of the robot's parameters",
-        settings.starts
+        "\nEvery optimum is local: the best of {starts} starts. The paper does not give all of the robot's parameters"
     );
     output::say!("(see model-spec/robot.toml), so its values are a yardstick, not a like-for-like comparison.");
     let all = results.iter().all(GaitResult::is_optimal);

@@ -116,9 +116,9 @@ enum Command {
         /// Impose contact, torque and speed limits at each real leg, not only at the virtual ones.
         #[arg(long)]
         real_legs: bool,
-        /// Number of starts; the first is a default walk, the others are drawn at random.
-        #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=100_000))]
-        starts: u32,
+        /// Number of starts, a default walk and random ones; if it is not given, as many as the optima found let expect others.
+        #[arg(long, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+        starts: Option<u32>,
         /// Write the whole result as JSON; `-` is standard output.
         #[arg(long, value_name = "FILE|-")]
         json: Option<String>,
@@ -211,9 +211,9 @@ enum Command {
         /// Folder for the results.
         #[arg(long = "out", value_name = "DIR", default_value = "sweep")]
         folder: PathBuf,
-        /// Starts at every speed, besides those from the neighbours.
-        #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=100_000))]
-        starts: u32,
+        /// Starts at every speed, besides those from the neighbours; if it is not given, as for `optimize`.
+        #[arg(long, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+        starts: Option<u32>,
         /// Of the random starts.
         #[arg(long, default_value_t = 1)]
         seed: u64,
@@ -249,7 +249,7 @@ pub fn run() -> ExitCode {
         Some(Command::Model { gait, latex, json }) => model::run(by_name(&gait), latex, json.as_deref()),
         Some(Command::Import { file, folder, lock }) => import::run(&file, folder, lock),
         Some(Command::Optimize { gait, criterion, speed, seed, real_legs, starts, json }) => {
-            let settings = piaffe::search::multi_start::Settings { starts: starts as usize, seed };
+            let settings = piaffe::search::multi_start::Settings { starts: starts.map(|n| n as usize), seed };
             let task = Task { gait: by_name(&gait), criterion: criterion_by_name(&criterion), speed };
             optimize::run(task, real_legs, &settings, json.as_deref())
         }
@@ -260,7 +260,7 @@ pub fn run() -> ExitCode {
         Some(Command::Verify { results, json }) => verify::run(&results, json.as_deref()),
         Some(Command::Report { results, detail, out }) => report::run(&results, detail, &out),
         Some(Command::Sweep { gait, criterion, speeds, real_legs, folder, starts, seed }) => {
-            let settings = piaffe::search::multi_start::Settings { starts: starts as usize, seed };
+            let settings = piaffe::search::multi_start::Settings { starts: starts.map(|n| n as usize), seed };
             let gaits: Vec<_> =
                 if gait.is_empty() { first_robot().collect() } else { gait.iter().map(|g| by_name(g)).collect() };
             let wanted = |c: &Criterion| criterion.iter().any(|w| w == "all" || w == c.name());

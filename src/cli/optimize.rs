@@ -13,7 +13,7 @@ use std::time::Instant;
 pub fn run(task: Task, real_legs: bool, settings: &Settings, json: Option<&str>) -> anyhow::Result<bool> {
     let Task { mut gait, speed, .. } = task;
     let altered = real_legs.then(|| Altered::at_real_legs(gait)).transpose().map_err(anyhow::Error::msg)?;
-    let bar = progress(settings.starts as u64, "starts");
+    let bar = progress(settings.starts);
     let mut result = solve(task, &[], settings, &bar);
     if let Some(altered) = &altered {
         // Sought from the optimum without these limits too.
@@ -48,10 +48,14 @@ pub fn solve(task: Task, from: &[Vec<f64>], settings: &Settings, bar: &ProgressB
     GaitResult::new(gait, criterion, speed, &found, settings.seed, || started.elapsed().as_secs_f64())
 }
 
-/// A bar on standard error; hidden where that is no terminal.
-pub fn progress(length: u64, unit: &str) -> ProgressBar {
-    let bar = if output::is_quiet() { ProgressBar::hidden() } else { ProgressBar::new(length) };
-    let style = ProgressStyle::with_template(&format!("{{msg}} {{bar:30}} {{pos}}/{{len}} {unit} {{elapsed}}"));
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    bar
+/// Counts starts on standard error, with a bar if it is known how many there will be; hidden where that is no terminal.
+pub fn progress(starts: Option<usize>) -> ProgressBar {
+    let bar = match starts {
+        _ if output::is_quiet() => ProgressBar::hidden(),
+        Some(starts) => ProgressBar::new(starts as u64),
+        None => ProgressBar::no_length(),
+    };
+    let template =
+        if starts.is_some() { "{msg} {bar:30} {pos}/{len} starts {elapsed}" } else { "{msg} {pos} starts {elapsed}" };
+    bar.with_style(ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar()))
 }

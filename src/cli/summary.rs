@@ -4,6 +4,7 @@ use piaffe::certificate::Certificate;
 use piaffe::model::Description;
 use piaffe::motion::Criterion;
 use piaffe::result::{GaitResult, Status};
+use piaffe::search::evidence::Effort;
 use piaffe::sensitivity::Sensitivity;
 use std::io::Write;
 
@@ -24,6 +25,18 @@ fn standing(c: &Certificate) -> String {
     });
     let open = c.cycle_error.is_none_or(|error| error > c.tolerance).then(|| "cycle not proven to close".to_string());
     format!("sampled: {}", gaps.chain(open).collect::<Vec<_>>().join("\n                  "))
+}
+
+/// How sure it is that there is nothing better.
+fn confidence(r: &GaitResult) -> String {
+    let Effort { starts, informed, optima, .. } = r.search.effort;
+    let more = if informed > 0 { format!(" (and {informed} from or near known optima)") } else { String::new() };
+    let Some(best) = r.local_optima.first() else { return format!("no optimum from {starts} starts{more}") };
+    let unseen = match r.search.effort.expected_optima() {
+        Some(expected) => format!("{:.1} further optima are to be expected", expected - optima as f64),
+        None => "too few to tell how many further optima to expect".into(),
+    };
+    format!("reached by {} of {starts} starts{more}; {unseen}", best.reached)
 }
 
 /// Prints all there is to know about a result.
@@ -131,8 +144,9 @@ pub fn print(description: &Description, r: &GaitResult) -> std::io::Result<()> {
         writeln!(out, "                  least margin {}", legs.support.words())?;
         writeln!(out, "                  at the impact {}", legs.impact.words())?;
     }
+    writeln!(out, "  search          {}", confidence(r))?;
     if r.local_optima.len() > 1 {
-        writeln!(out, "  local optima    (cost, half steps, how many of {} starts led there)", r.search.starts)?;
+        writeln!(out, "  local optima    (cost, half steps, how many starts led there)")?;
         for o in &r.local_optima {
             let durations: Vec<String> = o.durations.iter().map(|t| format!("{t:.3}")).collect();
             writeln!(out, "    {:12.4}  {}  {}", o.cost, durations.join("/"), o.reached)?;

@@ -231,7 +231,7 @@ fn facts(s: &Subject) -> Markup {
                 dt { "half steps" } dd { (durations.join(" + ")) " s" }
                 dt { "travel in them" } dd { (format!("{:.4}", r.step_length.unwrap_or(0.0))) " m" }
                 @for leg in 0..2 { dt { "virtual leg " (leg + 1) } dd { (s.leg_name(leg)) } }
-                dt { "local optima" } dd { (r.local_optima.len()) " from " (r.search.starts) " starts" }
+                dt { "local optima" } dd { (r.local_optima.len()) " from " (r.search.effort.starts) " starts" }
             }
             p.note { "Joints, peak against limit" }
             table.peaks { tbody { @for p in &r.peaks {

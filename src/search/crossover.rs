@@ -121,7 +121,7 @@ fn between(
 ) -> Option<GaitResult> {
     let from: Vec<Vec<f64>> = ends.into_iter().filter_map(|r| theta(gait, r)).collect();
     // The ends come from wide searches: their basins are what counts.
-    let settings = Settings { starts: 1, ..settings.clone() };
+    let settings = Settings { starts: Some(1), ..settings.clone() };
     let (result, _) = search_at(gait, ends[0].criterion, speed, &settings, &from, journal);
     result.is_optimal().then_some(result)
 }

@@ -15,6 +15,8 @@ const BISECTION: f64 = 1e-3;
 /// First step beyond the last speed that works, m/s, and where stepping ends.
 const STEP: f64 = 0.1;
 const FASTEST: f64 = 10.0;
+/// Starts at a speed that may have no motion at all, where their number is not given.
+const STARTS: usize = 4;
 
 /// How fast a gait goes.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -90,7 +92,7 @@ fn attempt(gait: &dyn Gait, speed: f64, from: Option<&[f64]>, settings: &Setting
     let task = Task { gait, criterion: Criterion::Torque, speed };
     let of = |theta: &[f64]| task.descend(theta, &mut |_| Control::Continue);
     let mut best = from.map(|theta| task.follow(theta, &mut |_| Control::Continue));
-    for k in 0..settings.starts {
+    for k in 0..settings.starts.unwrap_or(STARTS) {
         if best.as_ref().is_some_and(|b| b.status.is_optimal()) {
             break;
         }
@@ -106,8 +108,8 @@ fn attempt(gait: &dyn Gait, speed: f64, from: Option<&[f64]>, settings: &Setting
 /// For a speed without a feasible motion the nearest one with one, to 0.001 m/s, as far as local
 /// searches can tell. Tries speeds ever further off on both sides, then bisects from the motion found.
 pub fn nearest_speed(gait: &dyn Gait, speed: f64, settings: &Settings) -> Option<f64> {
-    let few = Settings { starts: settings.starts.min(3), ..settings.clone() };
-    let none = Settings { starts: 0, ..settings.clone() };
+    let few = Settings { starts: Some(settings.starts.unwrap_or(STARTS).min(3)), ..settings.clone() };
+    let none = Settings { starts: Some(0), ..settings.clone() };
     let (mut slower, mut faster) = (speed, speed);
     for _ in 0..8 {
         for (candidate, last) in [(slower / 1.5, slower), (faster * 1.5, faster)] {

@@ -4,7 +4,7 @@
 //! move over it; configurations follow by inverse kinematics on the generated placement kernel, for
 //! any leg, kept near a nominal posture inside the joint ranges.
 
-use crate::model::{Description, Gait, HalfSteps};
+use crate::model::{Description, Gait, HalfSteps, Rotation};
 use crate::motion::{HalfStep, Motion};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::FRAC_PI_2;
@@ -22,6 +22,8 @@ pub struct Plan {
     pub lead: f64,
     /// Posture that inverse kinematics stays near: share of each joint's range, per joint of a leg.
     pub posture: Vec<f64>,
+    /// Pitch of a platform that pitches, rad.
+    pub pitch: f64,
 }
 
 impl Plan {
@@ -33,17 +35,21 @@ impl Plan {
             clearance: 0.02,
             lead: 0.0,
             posture: vec![0.5; joints_per_leg(d)],
+            pitch: 0.0,
         }
     }
 
-    /// A walk drawn at random: tall or crouched, quick or slow, joints bent either way.
-    pub fn random(d: &Description, rng: &mut fastrand::Rng) -> Plan {
+    /// A walk drawn at random: quick or slow, joints bent either way, and as tall or crouched as legs bent like that stand.
+    pub fn random(gait: &dyn Gait, rng: &mut fastrand::Rng) -> Plan {
+        let d = gait.description();
         let mut within = |lo: f64, hi: f64| lo + (hi - lo) * rng.f64();
-        let height = within(0.55, 0.97);
         let durations = (0..d.phases()).map(|_| duration(d, within(0.08, 0.4))).collect();
-        let (clearance, lead) = (within(0.008, 0.04), within(-0.15, 0.15));
+        let (clearance, lead) = (within(0.008, 0.04), within(-0.3, 0.3));
         let posture = (0..joints_per_leg(d)).map(|_| within(0.1, 0.9)).collect();
-        Plan { height, durations, clearance, lead, posture }
+        let pitch = within(-0.5, 0.5);
+        let mut plan = Plan { height: 1.0, durations, clearance, lead, posture, pitch };
+        plan.height = within(0.85, 1.0) * reach(gait, &plan) / d.leg_length();
+        plan
     }
 }
 
@@ -84,9 +90,12 @@ pub fn walk(gait: &dyn Gait, plan: &Plan, speed: f64) -> Motion {
 
 fn nominal_posture(d: &Description, plan: &Plan) -> Vec<f64> {
     let mut q = vec![0.0; d.orientations()];
+    if d.rotation == Rotation::Pitch {
+        q[d.joints()] = plan.pitch;
+    }
     for leg in &d.legs {
         for (depth, j) in (leg.first_joint..leg.end_joint).enumerate() {
-            let [lo, hi] = reach(d, j);
+            let [lo, hi] = bend(d, j);
             let share = plan.posture.get(depth).copied().unwrap_or(0.5);
             q[j] = lo + share * (hi - lo);
         }
@@ -96,7 +105,7 @@ fn nominal_posture(d: &Description, plan: &Plan) -> Vec<f64> {
 
 /// The part of a joint's range that a walk is drawn from, rad: a leg hangs, so that the platform's joints turn by no more than
 /// a quarter of a turn, however far they could.
-fn reach(d: &Description, j: usize) -> [f64; 2] {
+fn bend(d: &Description, j: usize) -> [f64; 2] {
     let [lo, hi] = d.joints[j].range;
     let hangs = [lo.max(-FRAC_PI_2), hi.min(FRAC_PI_2)];
     if d.hangs_on_platform(j) && hangs[0] < hangs[1] { hangs } else { [lo, hi] }
@@ -157,6 +166,17 @@ fn place(gait: &dyn Gait, plan: &Plan, k: usize, durations: &[f64], travel: f64,
         let begin = start + share * travel;
         Target { platform: [begin + (1.0 - share) * travel * s - fore, height], swing: [travel * glide - fore, lift] }
     }
+}
+
+/// Distance of leg 1's foot from its hip in the posture of a plan, m.
+fn reach(gait: &dyn Gait, plan: &Plan) -> f64 {
+    let d = gait.description();
+    let level = nominal_posture(d, &Plan { pitch: 0.0, ..plan.clone() });
+    let mut out = vec![0.0; 2 * d.positions() * (1 + d.orientations())];
+    gait.placement(0, &level, &mut out);
+    let hip = d.bodies.iter().find(|b| b.parent == Some(0) && b.coordinate == Some(d.legs[0].first_joint));
+    let [x, y, _] = hip.map_or([0.0; 3], |b| b.offset);
+    (out[0] + x).hypot(out[1] + y)
 }
 
 /// Height of the platform's mass centre with all joints at zero, m.

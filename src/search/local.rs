@@ -126,13 +126,14 @@ impl Task<'_> {
         while solution.status.is_optimal()
             && let Some(mut finer) = cycle.finer()
         {
-            let (better, left) = settle(&mut finer, &solution.x, CAUTION, observe);
-            // What does not become an optimum there stays what it is: its receipt tells.
-            solution.iterations += better.iterations;
+            let (mut better, left) = settle(&mut finer, &solution.x, CAUTION, observe);
             if !better.status.is_optimal() {
+                // What does not become an optimum there stays what it is: its receipt tells.
+                solution.iterations += better.iterations;
                 break;
             }
-            (solution, violation, cycle) = (Solution { iterations: solution.iterations, ..better }, left, finer);
+            better.iterations += solution.iterations;
+            (solution, violation, cycle) = (better, left, finer);
         }
         finish(&mut cycle, solution, violation)
     }
@@ -143,19 +144,17 @@ fn settle(cycle: &mut Cycle, start: &[f64], first_step_limit: f64, observe: Obse
     let options = options(cycle);
     let first = Options { first_step_limit, ..options.clone() };
     let mut solution = sqp::minimize(cycle, start, &first, observe);
-    let mut violation = f64::INFINITY;
-    for _ in 0..ROUNDS {
+    for round in 0.. {
         let Ok(found) = cycle.simulate(&solution.x).and_then(|()| dips(cycle)) else { break };
-        violation = found.violation;
-        if !solution.status.is_optimal() || violation <= DENSE {
-            break;
+        if !solution.status.is_optimal() || found.violation <= DENSE || round == ROUNDS {
+            return (solution, found.violation);
         }
         found.impose(cycle);
         let iterations = solution.iterations;
         solution = sqp::minimize(cycle, &solution.x, &options, observe);
         solution.iterations += iterations;
     }
-    (solution, violation)
+    (solution, f64::INFINITY)
 }
 
 fn finish(cycle: &mut Cycle, solution: Solution, violation: f64) -> Local {

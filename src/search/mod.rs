@@ -2,6 +2,7 @@
 
 pub mod atlas;
 pub mod crossover;
+pub mod evidence;
 pub mod fastest;
 pub mod guess;
 pub mod journal;

@@ -1,31 +1,41 @@
 //! Many starts, all local optima: in parallel, with the same result for any number of threads.
 
+use super::evidence::Effort;
 use super::guess::{Plan, walk};
 use super::local::{Local, Task};
 use crate::cycle::Cycle;
 use crate::model::Gait;
 use crate::motion::Criterion;
-use crate::sqp::{Control, Problem, Values};
+use crate::sqp::{Control, Iteration, Problem, Values};
 use rayon::prelude::*;
 
 /// Costs within this share of each other belong to one optimum, if the motions agree too.
 const SAME_COST: f64 = 1e-5;
 
-/// Walks drawn for each random start.
-const DRAWS: usize = 6;
+/// Starts that run side by side; what they found decides whether more do.
+const BATCH: usize = 8;
+
+/// Walks drawn for each random start of the first batch.
+const DRAWS: usize = 3;
+
+/// Starts after which a search ends whatever it has found.
+const MOST: usize = 64;
+
+/// After the first batch, every start of this many begins near the best optimum so far.
+const HOP: usize = 4;
 
 /// How widely to search.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// Number of starts; the first is the default walk.
-    pub starts: usize,
+    /// Number of starts, the first of which is the default walk; by default as many as the evidence asks for.
+    pub starts: Option<usize>,
     /// Of the random starts.
     pub seed: u64,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Settings { starts: 8, seed: 1 }
+        Settings { starts: None, seed: 1 }
     }
 }
 
@@ -36,14 +46,21 @@ pub struct Found {
     pub optima: Vec<Optimum>,
     /// Of the starts without an optimum, the one that came closest: its conflicts explain why.
     pub failure: Option<Local>,
-    pub starts: usize,
+    pub effort: Effort,
 }
 
-/// A local optimum and how often it was reached.
+/// A local optimum and how many starts that knew of none led to it.
 #[derive(Clone, Debug)]
 pub struct Optimum {
     pub local: Local,
     pub reached: usize,
+}
+
+/// Where a start ended.
+struct End {
+    local: Local,
+    /// Whether the start was from or near a known optimum.
+    informed: bool,
 }
 
 /// Searches from several starts. `done(k)` is told when start `k` has ended.
@@ -67,24 +84,35 @@ pub fn search_from(
     done: &(dyn Fn(usize) + Sync),
 ) -> Found {
     let task = Task { gait, criterion, speed };
-    let locals: Vec<Local> = (0..neighbours.len() + settings.starts.max(1))
-        .into_par_iter()
-        .map(|k| {
-            let local = match neighbours.get(k) {
-                Some(theta) => task.follow(theta, &mut |_| Control::Continue),
-                None => {
-                    // Every second start plunges: what is found must not depend on one way of beginning.
-                    let k = k - neighbours.len();
-                    let theta = start(gait, criterion, speed, settings.seed, k);
-                    let way = if k % 2 == 1 { Task::plunge } else { Task::descend };
-                    way(&task, &theta, &mut |_| Control::Continue)
-                }
-            };
+    let follow = |theta: &Vec<f64>| End { local: task.follow(theta, &mut |_| Control::Continue), informed: true };
+    let mut ends: Vec<End> = neighbours.par_iter().map(follow).collect();
+    let most = settings.starts.unwrap_or(MOST).max(1);
+    for first in (0..most).step_by(BATCH) {
+        let so_far = collect(criterion, &ends);
+        if settings.starts.is_none() && so_far.effort.is_enough() {
+            return so_far;
+        }
+        let best = so_far.optima.first().filter(|_| first > 0);
+        let batch = (first..most.min(first + BATCH)).into_par_iter().map(|k| {
+            let end = begin(&task, settings.seed, k, best);
             done(k);
-            local
-        })
-        .collect();
-    collect(criterion, locals)
+            end
+        });
+        ends.par_extend(batch);
+    }
+    collect(criterion, &ends)
+}
+
+/// The k-th start of a seed, and where it leads.
+fn begin(task: &Task, seed: u64, k: usize, best: Option<&Optimum>) -> End {
+    let observe = &mut |_: &Iteration| Control::Continue;
+    if let (Some(best), 0) = (best, k % HOP) {
+        return End { local: task.descend(&hop(task, seed, k, &best.local.theta), observe), informed: true };
+    }
+    let theta = start(task.gait, task.criterion, task.speed, seed, k);
+    // Every second start plunges: what is found must not depend on one way of beginning.
+    let way = if k % 2 == 1 { Task::plunge } else { Task::descend };
+    End { local: way(task, &theta, observe), informed: false }
 }
 
 /// The k-th start of a seed: the default walk, then random ones.
@@ -94,34 +122,51 @@ pub fn start(gait: &dyn Gait, criterion: Criterion, speed: f64, seed: u64, k: us
     if k == 0 {
         return cycle.theta(&walk(gait, &Plan::default_for(d), speed));
     }
-    // Streams of neighbouring seeds must not overlap: mix seed and number.
-    let mut rng = fastrand::Rng::with_seed(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ k as u64);
-    // Drawing is cheap beside descending: of a few walks, the one that comes closest to satisfying the constraints.
+    let mut rng = stream(seed, k);
+    // Of a few walks, the one that comes closest to satisfying the constraints is the safest start. But the safest lead to the
+    // same few optima, so later starts take what comes.
+    let draws = if k < BATCH { DRAWS } else { 1 };
     let mut values = Values::zeros(cycle.equalities(), cycle.inequalities());
-    let drawn = (0..DRAWS).map(|_| {
-        let theta = cycle.theta(&walk(gait, &Plan::random(d, &mut rng), speed));
+    let drawn = (0..draws).map(|_| {
+        let theta = cycle.theta(&walk(gait, &Plan::random(gait, &mut rng), speed));
         let violation = cycle.evaluate(&theta, &mut values).map_or(f64::INFINITY, |()| values.violation());
         (violation, theta)
     });
     drawn.min_by(|a, b| a.0.total_cmp(&b.0)).map_or_else(Vec::new, |(_, theta)| theta)
 }
 
-fn collect(criterion: Criterion, locals: Vec<Local>) -> Found {
-    let starts = locals.len();
-    let (mut good, mut bad): (Vec<Local>, Vec<Local>) = locals.into_iter().partition(|l| l.status.is_optimal());
+/// A random motion near `theta`: every variable moves by up to its natural size.
+fn hop(task: &Task, seed: u64, k: usize, theta: &[f64]) -> Vec<f64> {
+    let mut rng = stream(seed, k);
+    let scale = Cycle::new(task.gait, task.criterion, task.speed).scale();
+    theta.iter().zip(scale).map(|(x, scale)| x + scale * (2.0 * rng.f64() - 1.0)).collect()
+}
+
+/// Random numbers of the k-th start.
+fn stream(seed: u64, k: usize) -> fastrand::Rng {
+    // Streams of neighbouring seeds must not overlap: mix seed and number.
+    fastrand::Rng::with_seed(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ k as u64)
+}
+
+fn collect(criterion: Criterion, ends: &[End]) -> Found {
+    let (mut good, mut bad): (Vec<&End>, Vec<&End>) = ends.iter().partition(|e| e.local.status.is_optimal());
     // Stable sorts: ties keep the order of the starts.
-    good.sort_by(|a, b| a.costs.of(criterion).total_cmp(&b.costs.of(criterion)));
+    good.sort_by(|a, b| a.local.costs.of(criterion).total_cmp(&b.local.costs.of(criterion)));
     // A proof of infeasibility explains more than a search that got lost.
-    let unproven = |l: &Local| l.conflicts.is_empty();
-    bad.sort_by(|a, b| unproven(a).cmp(&unproven(b)).then(a.kkt.violation.total_cmp(&b.kkt.violation)));
+    let unproven = |e: &End| e.local.conflicts.is_empty();
+    bad.sort_by(|a, b| unproven(a).cmp(&unproven(b)).then(a.local.kkt.violation.total_cmp(&b.local.kkt.violation)));
     let mut optima: Vec<Optimum> = Vec::new();
-    for local in good {
-        match optima.iter_mut().find(|o| same(criterion, &o.local, &local)) {
-            Some(known) => known.reached += 1,
-            None => optima.push(Optimum { local, reached: 1 }),
+    for End { local, informed } in good {
+        let reached = usize::from(!informed);
+        match optima.iter_mut().find(|o| same(criterion, &o.local, local)) {
+            Some(known) => known.reached += reached,
+            None => optima.push(Optimum { local: local.clone(), reached }),
         }
     }
-    Found { optima, failure: bad.into_iter().next(), starts }
+    let starts = ends.iter().filter(|e| !e.informed).count();
+    let successes = optima.iter().map(|o| o.reached).sum();
+    let effort = Effort { starts, successes, informed: ends.len() - starts, optima: optima.len() };
+    Found { optima, failure: bad.first().map(|e| e.local.clone()), effort }
 }
 
 fn same(criterion: Criterion, a: &Local, b: &Local) -> bool {
