@@ -44,9 +44,9 @@ fn the_receipt_agrees_with_the_optimizer_that_shares_no_code_with_it() {
         let (torque, energy) =
             (apart(receipt.costs.torque, local.costs.torque), apart(receipt.costs.energy, local.costs.energy));
         // The best motions of the A1 have more in a half step than the mesh shows.
-        let most = if name.starts_with("a1/") { 1e-4 } else { 1e-5 };
+        let (most, cycle) = if name.starts_with("a1/") { (1e-4, 1e-6) } else { (1e-5, 1e-7) };
         assert!(torque < most && energy < 1e-3, "{name}: {torque:e} {energy:e}");
-        assert!(receipt.max_violation < VIOLATION && receipt.cycle_error < 1e-7, "{name}: {receipt:?}");
+        assert!(receipt.max_violation < VIOLATION && receipt.cycle_error < cycle, "{name}: {receipt:?}");
         assert!((receipt.speed - speed).abs() < 1e-7);
     }
 }
