@@ -17,7 +17,18 @@ pub fn sin_cos_together<const N: usize>(angles: [f64; N]) -> [(f64, f64); N] {
 /// processor has several angles' operations to choose from.
 #[inline(always)]
 pub fn sin_cos_in_step<const N: usize>(angles: [f64; N]) -> [(f64, f64); N] {
-    angles.map(reduced).map(series).map(turned)
+    let (mut steps, mut results) = ([(0, 0.0, 0.0); N], [(0.0, 0.0); N]);
+    // Loops, not `map`: LLVM does not always take apart an array that is passed on, and then finds no vector instructions.
+    for k in 0..N {
+        steps[k] = reduced(angles[k]);
+    }
+    for k in 0..N {
+        steps[k] = series(steps[k]);
+    }
+    for k in 0..N {
+        results[k] = turned(steps[k]);
+    }
+    results
 }
 
 /// Sine and cosine of `x` (rad): one pinned, branch-free implementation, so that results are the

@@ -10,6 +10,7 @@ use piaffe_codegen::program::Program;
 use piaffe_codegen::{Generated, RobotFiles, SpecFile, generate, generate_families};
 use std::fmt::Write;
 use syn::visit::{self, Visit};
+use syn::visit_mut::{self, VisitMut};
 
 /// Robots with these of their gaits, as if the specification were found under `prefix`.
 fn robots(prefix: &str, gaits: &[&'static str]) -> Vec<RobotFiles> {
@@ -91,6 +92,34 @@ impl Law {
         if indices.0.is_empty() || indices.0.iter().any(|index| *index != lane && !literal(index)) {
             self.broken.push(format!("{} computes an index", f.sig.ident));
         }
+        // What is left without the lanes' places is a kernel: a straight line.
+        let mut body = lanes.body.clone();
+        WithoutLanes.visit_block_mut(&mut body);
+        self.kernel = true;
+        self.visit_block(&body);
+        self.kernel = false;
+    }
+}
+
+/// Takes places in arrays of lanes for names, and what is stored there for values with names.
+struct WithoutLanes;
+
+impl VisitMut for WithoutLanes {
+    fn visit_stmt_mut(&mut self, statement: &mut syn::Stmt) {
+        if let syn::Stmt::Expr(syn::Expr::Assign(store), Some(_)) = statement
+            && matches!(*store.left, syn::Expr::Index(_))
+        {
+            let value = &store.right;
+            *statement = syn::parse_quote!(let stored = #value;);
+        }
+        visit_mut::visit_stmt_mut(self, statement);
+    }
+
+    fn visit_expr_mut(&mut self, e: &mut syn::Expr) {
+        if matches!(e, syn::Expr::Index(_)) {
+            *e = syn::parse_quote!(lane);
+        }
+        visit_mut::visit_expr_mut(self, e);
     }
 }
 

@@ -38,6 +38,22 @@ pub enum Shape {
     Matrix(usize, usize),
 }
 
+impl Shape {
+    /// The indices of all its numbers, as they are written behind a name.
+    pub fn places(self) -> impl Iterator<Item = String> {
+        let (rows, columns) = match self {
+            Shape::Scalar => (1, 1),
+            Shape::Vector(n) => (n, 1),
+            Shape::Matrix(rows, columns) => (rows, columns),
+        };
+        (0..rows * columns).map(move |k| match self {
+            Shape::Scalar => String::new(),
+            Shape::Vector(_) => format!("[{k}]"),
+            Shape::Matrix(..) => format!("[{}][{}]", k / columns, k % columns),
+        })
+    }
+}
+
 impl Kernel {
     pub fn new(name: impl Into<String>, doc: impl Into<String>) -> Kernel {
         Kernel { name: name.into(), doc: doc.into(), inputs: Vec::new(), outputs: Vec::new(), batched: false }

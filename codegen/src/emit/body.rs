@@ -1,28 +1,24 @@
-//! The body of a kernel: a straight line of `let`s over named values, and what it returns.
-//!
-//! Long ones are cut into nested blocks, because rustc's debug information does not survive thousands
-//! of bindings in one scope.
+//! The body of a kernel: a straight line of `let`s over named values, and what becomes of its outputs.
 
 use super::function::Function;
 use super::layout::{Layout, indent, line};
+use super::scopes::{Scopes, Statement};
 use crate::dynamics::Shape;
 use crate::expr::Kind;
 use crate::program::{Id, Node, Sum, Term};
 use std::fmt::Write;
 
-/// Bindings per scope.
-const BLOCK: usize = 200;
-
 /// Angles whose sines and cosines are evaluated at once, at most.
 const AT_ONCE: usize = 4;
 
-/// How sines and cosines are evaluated; the bits are the same.
-#[derive(Clone, Copy)]
-pub enum Sines {
-    /// Side by side in a vector register: fast for one state.
-    Together,
-    /// In step, but each on its own: a loop around the kernel takes many states side by side.
-    InStep,
+/// For whom a body is written; the bits are the same.
+#[derive(Clone, Copy, PartialEq)]
+enum Form {
+    /// One state. Sines and cosines are evaluated side by side in a vector register, and outputs are returned.
+    Single,
+    /// A lane in a loop, which takes many states side by side. Sines and cosines are evaluated in step, each on its own,
+    /// and outputs are put into their lanes as soon as they are known: stores one after another would wait for memory.
+    Lane,
 }
 
 /// A program as it is written: what its nodes are called, and which of them anything needs.
@@ -31,25 +27,22 @@ struct Body<'a> {
     order: Vec<Id>,
     used: Vec<bool>,
     names: Vec<String>,
-    sines: Sines,
+    form: Form,
 }
 
-/// A `let` and the nodes that it gives a value.
-struct Binding {
-    nodes: Vec<Id>,
-    text: String,
-}
-
-/// Writes the body of a function.
-pub fn write(function: &Function, sines: Sines, out: &mut String) {
-    let order = function.program.schedule_sines_first();
-    let mut used = vec![false; function.program.nodes.len()];
-    order.iter().for_each(|id| used[*id as usize] = true);
-    let names = function.program.nodes.iter().enumerate().map(|(id, node)| name(function, id, *node)).collect();
-    let body = Body { function, order, used, names, sines };
+/// Writes the body of a function for one state.
+pub fn write(function: &Function, out: &mut String) {
+    let body = Body::new(function, Form::Single);
     body.inputs(out);
-    body.lets(out);
-    body.outputs(out);
+    body.scopes(true).write(&body.bindings(), out);
+    body.result(out);
+}
+
+/// Writes the body of a loop over lanes, from inputs and to outputs that are arrays of lanes.
+pub fn write_lane(function: &Function, out: &mut String) {
+    let body = Body::new(function, Form::Lane);
+    body.inputs(out);
+    body.scopes(false).write(&body.with_stores(body.bindings()), out);
 }
 
 fn name(function: &Function, id: usize, node: Node) -> String {
@@ -68,7 +61,25 @@ fn input_name(function: &Function, input: usize, element: usize) -> String {
     }
 }
 
-impl Body<'_> {
+impl<'a> Body<'a> {
+    fn new(function: &'a Function, form: Form) -> Body<'a> {
+        let order = function.program.schedule_sines_first();
+        let mut used = vec![false; function.program.nodes.len()];
+        order.iter().for_each(|id| used[*id as usize] = true);
+        let names = function.program.nodes.iter().enumerate().map(|(id, node)| name(function, id, *node)).collect();
+        Body { function, order, used, names, form }
+    }
+
+    /// The scopes of its statements; whether the outputs are evaluated behind them.
+    fn scopes(&self, outputs_follow: bool) -> Scopes<'_> {
+        Scopes { program: &self.function.program, names: &self.names, outputs_follow, depth: self.depth() }
+    }
+
+    /// Indents of its lines.
+    fn depth(&self) -> usize {
+        if self.form == Form::Lane { 2 } else { 1 }
+    }
+
     /// Inputs by the names of their elements.
     fn inputs(&self, out: &mut String) {
         let program = &self.function.program;
@@ -82,37 +93,26 @@ impl Body<'_> {
         for (i, input) in self.function.kernel.inputs.iter().enumerate() {
             if input.scalar {
                 let name = input_name(self.function, i, 0);
-                if name != input.name {
-                    line(out, &format!("let {name} = {};", input.name), 1);
+                match self.form {
+                    Form::Lane => line(out, &format!("let {name} = {}[lane];", input.name), self.depth()),
+                    Form::Single if name != input.name => {
+                        line(out, &format!("let {name} = {};", input.name), self.depth());
+                    }
+                    Form::Single => {}
                 }
                 continue;
             }
-            indent(out, 1);
+            indent(out, self.depth());
             let name = |k: usize| if used[i][k] { input_name(self.function, i, k) } else { "_".into() };
-            let names = (0..input.symbols.len()).map(|k| Layout::Sum(name(k)));
-            Layout::list("let [", names, format!("] = *{};", input.name)).write(out, 1);
-        }
-    }
-
-    /// The bindings, in scopes of limited size that hand on what is needed later.
-    fn lets(&self, out: &mut String) {
-        let bindings = self.bindings();
-        if bindings.len() <= BLOCK {
-            return bindings.iter().for_each(|b| line(out, &b.text, 1));
-        }
-        let last_use = self.last_uses(&bindings);
-        for (number, block) in bindings.chunks(BLOCK).enumerate() {
-            let end = (number + 1) * BLOCK;
-            let kept = block.iter().flat_map(|b| &b.nodes).filter(|id| last_use[**id as usize] >= end);
-            let kept: Vec<&str> = kept.map(|id| self.names[*id as usize].as_str()).collect();
-            let list =
-                |open: &str, close: &str| Layout::list(open, kept.iter().map(|k| Layout::Sum((*k).into())), close);
-            indent(out, 1);
-            list("let [", "] = {").write(out, 1);
-            block.iter().for_each(|b| line(out, &b.text, 2));
-            indent(out, 2);
-            list("[", "]").write(out, 2);
-            line(out, "};", 1);
+            let elements = 0..input.symbols.len();
+            let names = elements.clone().map(|k| Layout::Sum(name(k)));
+            if self.form == Form::Single {
+                Layout::list("let [", names, format!("] = *{};", input.name)).write(out, self.depth());
+            } else {
+                Layout::list("let [", names, "] = ").write(out, self.depth());
+                let of_lane = elements.map(|k| Layout::Word(format!("{}[{k}][lane]", input.name)));
+                Layout::list("[", of_lane, "];").write(out, self.depth());
+            }
         }
     }
 
@@ -135,13 +135,14 @@ impl Body<'_> {
         sines
     }
 
-    fn bindings(&self) -> Vec<Binding> {
+    /// A `let` for every node, but for sines and cosines, which are bound some at once.
+    fn bindings(&self) -> Vec<Statement> {
         let program = &self.function.program;
         let mut sines = self.sines();
         let mut bindings = Vec::with_capacity(self.order.len());
         for id in &self.order {
             let name = &self.names[*id as usize];
-            let text = match program.nodes[*id as usize] {
+            let (s, text) = match program.nodes[*id as usize] {
                 Node::Input(..) => continue,
                 Node::Sin(_) | Node::Cos(_) => {
                     // They follow one another: with the first, all are bound.
@@ -149,40 +150,65 @@ impl Body<'_> {
                     bindings.extend(sines.chunks(AT_ONCE).map(|pairs| self.sines_of(pairs)));
                     continue;
                 }
-                Node::Value(s) => self.sum(&["let ", name, " = "], &program.sums[s], ";"),
-                Node::Reciprocal(s) => self.sum(&["let ", name, " = 1.0 / ("], &program.sums[s], ");"),
+                Node::Value(s) => (s, self.sum(&["let ", name, " = "], &program.sums[s], ";")),
+                Node::Reciprocal(s) => (s, self.sum(&["let ", name, " = 1.0 / ("], &program.sums[s], ");")),
             };
-            bindings.push(Binding { nodes: vec![*id], text });
+            bindings.push(Statement { nodes: vec![*id], sums: vec![s], lines: vec![text] });
         }
         bindings
     }
 
     /// Sines and cosines of the arguments that are these sums.
-    fn sines_of(&self, pairs: &[(usize, [Option<Id>; 2])]) -> Binding {
+    fn sines_of(&self, pairs: &[(usize, [Option<Id>; 2])]) -> Statement {
         let arguments: Vec<_> = pairs.iter().map(|(s, _)| self.value(*s)).collect();
         let name = |id: Option<Id>| id.map_or("_", |id| &self.names[id as usize]);
         let values: Vec<_> = pairs.iter().map(|(_, [sin, cos])| format!("({}, {})", name(*sin), name(*cos))).collect();
         let (arguments, values) = (arguments.join(", "), values.join(", "));
-        let text = match (pairs.len(), self.sines) {
+        let text = match (pairs.len(), self.form) {
             (1, _) => format!("let {values} = math::sin_cos({arguments});"),
-            (_, Sines::Together) => format!("let [{values}] = math::sin_cos_together([{arguments}]);"),
-            (_, Sines::InStep) => format!("let [{values}] = math::sin_cos_in_step([{arguments}]);"),
+            (_, Form::Single) => format!("let [{values}] = math::sin_cos_together([{arguments}]);"),
+            (_, Form::Lane) => format!("let [{values}] = math::sin_cos_in_step([{arguments}]);"),
         };
-        Binding { nodes: pairs.iter().flat_map(|(_, pair)| pair).flatten().copied().collect(), text }
+        let nodes = pairs.iter().flat_map(|(_, pair)| pair).flatten().copied().collect();
+        Statement { nodes, sums: pairs.iter().map(|(s, _)| *s).collect(), lines: vec![text] }
     }
 
-    /// For each node the last binding that uses it; the largest number where an output does.
-    fn last_uses(&self, bindings: &[Binding]) -> Vec<usize> {
-        let program = &self.function.program;
-        let mut last = vec![0; program.nodes.len()];
-        let factors = |s: usize| program.sums[s].iter().flat_map(|t| &t.factors).map(|id| *id as usize);
+    /// The bindings, and after each the outputs that it makes known. Sums that are several outputs follow in the end: they
+    /// are not at hand yet, and evaluated early they take registers away.
+    fn with_stores(&self, bindings: Vec<Statement>) -> Vec<Statement> {
+        let (kernel, program) = (self.function.kernel, &self.function.program);
+        // After how many bindings each node is known.
+        let mut known = vec![0; program.nodes.len()];
         for (number, binding) in bindings.iter().enumerate() {
-            for s in binding.nodes.iter().filter_map(|id| program.nodes[*id as usize].sum()) {
-                factors(s).for_each(|id| last[id] = number);
+            binding.nodes.iter().for_each(|id| known[*id as usize] = number + 1);
+        }
+        let mut places: Vec<Vec<String>> = vec![Vec::new(); program.sums.len()];
+        for (output, sums) in kernel.outputs.iter().zip(&program.outputs) {
+            for (place, s) in output.shape.places().zip(sums) {
+                places[*s].push(format!("out.{}{place}[lane] = ", output.name));
             }
         }
-        program.outputs.iter().flatten().for_each(|s| factors(*s).for_each(|id| last[id] = usize::MAX));
-        last
+        let shared = self.shared();
+        let mut stores: Vec<Vec<Statement>> = (0..=bindings.len()).map(|_| Vec::new()).collect();
+        for s in program.outputs.iter().flatten() {
+            let places = std::mem::take(&mut places[*s]);
+            if places.is_empty() {
+                continue;
+            }
+            let value = self.output(*s, &shared);
+            let bound = shared[*s].then(|| self.sum(&["let ", &value, " = "], &program.sums[*s], ";"));
+            let lines = bound.into_iter().chain(places.into_iter().map(|place| place + &value + ";")).collect();
+            let ready = program.sums[*s].iter().flat_map(|t| &t.factors).map(|id| known[*id as usize]).max();
+            let after = if shared[*s] { bindings.len() } else { ready.unwrap_or(0) };
+            stores[after].push(Statement { nodes: Vec::new(), sums: vec![*s], lines });
+        }
+        let mut stores = stores.into_iter();
+        let mut all: Vec<Statement> = stores.next().unwrap_or_default();
+        for (binding, stores) in bindings.into_iter().zip(stores) {
+            all.push(binding);
+            all.extend(stores);
+        }
+        all
     }
 
     /// The value of a sum.
@@ -230,17 +256,28 @@ impl Body<'_> {
         }
     }
 
-    fn outputs(&self, out: &mut String) {
-        let (kernel, program) = (self.function.kernel, &self.function.program);
-        // An output that occurs in several places (A is symmetric) is computed once.
+    /// Sums that are outputs in several places (A is symmetric): they are computed once.
+    fn shared(&self) -> Vec<bool> {
+        let program = &self.function.program;
         let mut count = vec![0; program.sums.len()];
         program.outputs.iter().flatten().for_each(|s| count[*s] += 1);
         let simple = |s: usize| program.sums[s].len() <= 1 && program.sums[s].iter().all(|t| t.cost() == 0);
-        let shared: Vec<bool> = (0..count.len()).map(|s| count[s] > 1 && !simple(s)).collect();
+        (0..count.len()).map(|s| count[s] > 1 && !simple(s)).collect()
+    }
+
+    /// The value of a sum that is an output.
+    fn output(&self, sum: usize, shared: &[bool]) -> String {
+        if shared[sum] { format!("out{sum}") } else { self.value(sum) }
+    }
+
+    /// What a function for one state returns.
+    fn result(&self, out: &mut String) {
+        let (kernel, program) = (self.function.kernel, &self.function.program);
+        let shared = self.shared();
         for s in (0..shared.len()).filter(|s| shared[*s]) {
             line(out, &self.sum(&["let out", &s.to_string(), " = "], &program.sums[s], ";"), 1);
         }
-        let value = |s: &usize| if shared[*s] { format!("out{s}") } else { self.value(*s) };
+        let value = |s: &usize| self.output(*s, &shared);
         let list = |open: String, sums: &[usize]| Layout::list(open, sums.iter().map(value).map(Layout::Sum), "]");
         let expression = |shape: Shape, label: String, sums: &[usize]| match shape {
             Shape::Scalar => Layout::Sum(label + &value(&sums[0])),

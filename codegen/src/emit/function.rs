@@ -1,6 +1,6 @@
 //! One kernel as one function: its signature and what is said of it.
 
-use super::body::{self, Sines};
+use super::body;
 use super::layout::{Layout, indent, line};
 use super::{batch, type_name};
 use crate::dynamics::{Kernel, Shape};
@@ -80,23 +80,19 @@ impl Function<'_> {
             "/// {}\n///\n/// Operations: {} additions and multiplications, {} divisions, {} pairs of sine and cosine.\n#[inline]\n",
             self.kernel.doc, ops.flops, ops.divisions, ops.sincos
         );
-        self.write(&format!("pub fn {}(", self.kernel.name), Sines::Together, &mut source);
-        if self.kernel.batched && self.kernel.outputs.len() > 1 {
-            source += &batch::source(self);
-        }
-        source
-    }
-
-    /// The function without its documentation, from `open` to the end.
-    pub fn write(&self, open: &str, sines: Sines, out: &mut String) {
         let inputs = self.kernel.inputs.iter().map(|i| {
             let ty = if i.scalar { "f64".into() } else { format!("&[f64; {}]", i.symbols.len()) };
             Layout::Sum(format!("{}: {ty}", i.name))
         });
-        Layout::list(open.to_string(), inputs, format!(") -> {} {{", self.return_type())).write(out, 0);
-        body::write(self, sines, out);
-        line(out, "}", 0);
-        indent(out, 0);
+        let open = format!("pub fn {}(", self.kernel.name);
+        Layout::list(open, inputs, format!(") -> {} {{", self.return_type())).write(&mut source, 0);
+        body::write(self, &mut source);
+        line(&mut source, "}", 0);
+        indent(&mut source, 0);
+        if self.kernel.batched && self.kernel.outputs.len() > 1 {
+            source += &batch::source(self);
+        }
+        source
     }
 }
 

@@ -11,6 +11,7 @@ mod function;
 mod gait;
 mod layout;
 mod modules;
+mod scopes;
 mod whole;
 
 pub use family::{families_source, family_file_name, family_source};
