@@ -91,7 +91,7 @@ impl Search {
         self.sums.extend(program.sums.iter().map(|s| Sum { entries: Vec::with_capacity(s.len()), vacant: Vec::new() }));
         let pairs = program.sums.iter().map(|s| s.len() * s.len() / 2).sum();
         self.offered.clear();
-        self.offered.reserve(6 * pairs);
+        self.offered.reserve(3 * pairs);
         self.places.clear();
         self.places.resize_with(self.nodes.len(), SmallVec::new);
         self.hashes.clear();

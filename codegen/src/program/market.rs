@@ -1,8 +1,8 @@
 //! The market of divisors: what each would save over all sums, and which saves most.
 //!
 //! There are hundreds of thousands of divisors and most are seen once. So they stand one after another as they are
-//! seen, and what is looked up all over memory is only a table of eight bytes each, for many divisors at once: memory
-//! takes as long for one answer as for ten. Keys are hashes already, and there is no random seed: same input, same program.
+//! seen, and what is looked up all over memory is only a table of eight bytes each. Keys are hashes already, and there
+//! is no random seed: same input, same program.
 
 use super::Id;
 use std::cmp::Reverse;
