@@ -16,6 +16,7 @@ pub fn sin_cos_together<const N: usize>(angles: [f64; N]) -> [(f64, f64); N] {
 /// Sines and cosines of some angles in step, each with the bits of [`sin_cos`]: inside a loop over states, so that the
 /// processor has several angles' operations to choose from.
 #[inline(always)]
+#[allow(clippy::needless_range_loop)]
 pub fn sin_cos_in_step<const N: usize>(angles: [f64; N]) -> [(f64, f64); N] {
     let (mut steps, mut results) = ([(0, 0.0, 0.0); N], [(0.0, 0.0); N]);
     // Loops, not `map`: LLVM does not always take apart an array that is passed on, and then finds no vector instructions.
