@@ -1,6 +1,7 @@
 //! Many random starts: how the searches end, and in how many different optima.
 //!
-//! At 0.6 m/s, of 500 each: amble 492 optimal for either criterion, curvet 498 (energy), all others 500.
+//! At 0.6 m/s, of 500 each: trot 499 optimal for either criterion, amble 429 (energy) and 427, curvet 426 and 428, the A1's
+//! bound 243 (energy). All but the first few start from a single draw.
 
 use piaffe::gaits::GAITS;
 use piaffe::model::Gait;
@@ -9,7 +10,7 @@ use piaffe::result::{GaitResult, Status};
 use piaffe::search::evidence::Effort;
 use piaffe::search::local::{Local, Task};
 use piaffe::search::multi_start::{Found, Optimum, start};
-use piaffe::sqp::Control;
+use piaffe::sqp::{self, Control};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -31,6 +32,8 @@ fn finite(local: &Local, result: &GaitResult) -> bool {
     let own = [local.costs.energy, local.costs.torque, local.kkt.stationarity, local.kkt.violation];
     let told = [result.cost.unwrap_or(0.0), result.step_length.unwrap_or(0.0)];
     let conflicts = result.conflicts.iter().flat_map(|c| [c.time, c.violation, c.weight]);
+    // Where there is no motion there is nothing to tell of one.
+    let own = own.into_iter().filter(|_| local.status != sqp::Status::Undefined);
     local.theta.iter().copied().chain(own).chain(told).chain(conflicts).all(f64::is_finite)
 }
 
