@@ -1,7 +1,7 @@
 //! A result as it leaves the program: what was asked, what was found, and its receipt.
 
 use crate::certificate::Certificate;
-use crate::cycle::Label;
+use crate::cycle::{Label, theta};
 use crate::four_legs::RealLegs;
 use crate::model::Gait;
 use crate::motion::{Costs, Criterion, HalfStep, Motion};
@@ -271,6 +271,11 @@ impl GaitResult {
     /// The motion, if there is one.
     pub fn motion(&self) -> Option<Motion> {
         self.is_optimal().then(|| Motion { half_steps: self.variables.clone() })
+    }
+
+    /// Its variables Θ.
+    pub fn theta(&self) -> Option<Vec<f64>> {
+        self.motion().map(|motion| theta(&motion))
     }
 
     /// Makes `local` the result, with its receipt.

@@ -3,7 +3,7 @@
 //! Everything comes from `Cycle`, which the optimizer uses too. What is added here is where things are: the
 //! second half step of a mirrored gait, the footprints, and the real legs that a virtual leg stands for.
 
-use crate::cycle::{Cycle, Sample};
+use crate::cycle::{Cycle, Sample, theta};
 use crate::instant::{Glance, Quantities};
 use crate::model::{Body, Description, Gait, HalfSteps, Rotation};
 use crate::motion::{Criterion, Motion};
@@ -88,8 +88,7 @@ impl<'a> Walk<'a> {
         let d = gait.description();
         // Neither criterion nor speed has a part in where the robot is.
         let mut cycle = Cycle::new(gait, Criterion::Torque, 1.0);
-        let theta = cycle.theta(motion);
-        cycle.simulate(&theta)?;
+        cycle.simulate(&theta(motion))?;
         let mut moments = Vec::new();
         let mut stance_foot = [0.0; 3];
         let mut start = 0.0;

@@ -1,7 +1,7 @@
 //! Every derivative that the optimizer uses, against central differences of the same path.
 
 use piaffe::altered::Altered;
-use piaffe::cycle::{Cycle, elements};
+use piaffe::cycle::{Cycle, elements, theta};
 use piaffe::gaits::GAITS;
 use piaffe::model::Gait;
 use piaffe::motion::Criterion;
@@ -31,7 +31,7 @@ fn check(gait: &dyn Gait, criterion: Criterion, seed: u64) {
     // Not every drawn walk exists: the first that does is used.
     let theta = loop {
         let plan = Plan::random(gait, &mut rng);
-        let theta = cycle.theta(&walk(gait, &plan, speed));
+        let theta = theta(&walk(gait, &plan, speed));
         if cycle.evaluate(&theta, &mut values).is_ok() {
             break theta;
         }
@@ -146,7 +146,7 @@ fn the_hessian_of_the_lagrangian_agrees_with_differences_of_its_gradient() {
             let mut values = Values::zeros(cycle.equalities(), cycle.inequalities());
             let theta = loop {
                 let plan = Plan::random(gait, &mut rng);
-                let theta = cycle.theta(&walk(gait, &plan, 0.6));
+                let theta = theta(&walk(gait, &plan, 0.6));
                 if cycle.evaluate(&theta, &mut values).is_ok() {
                     break theta;
                 }

@@ -4,7 +4,6 @@ use super::{output, summary};
 use indicatif::{ProgressBar, ProgressStyle};
 use piaffe::altered::Altered;
 use piaffe::result::{GaitResult, Status};
-use piaffe::search::atlas::theta;
 use piaffe::search::fastest::nearest_speed;
 use piaffe::search::local::Task;
 use piaffe::search::multi_start::{Settings, search_from};
@@ -18,7 +17,7 @@ pub fn run(task: Task, real_legs: bool, settings: &Settings, json: Option<&str>)
     if let Some(altered) = &altered {
         // Sought from the optimum without these limits too.
         gait = altered;
-        let (from, virtual_cost): (Vec<_>, _) = (theta(gait, &result).into_iter().collect(), result.cost);
+        let (from, virtual_cost): (Vec<_>, _) = (result.theta().into_iter().collect(), result.cost);
         bar.set_position(0);
         result = GaitResult { virtual_cost, ..solve(Task { gait, ..task }, &from, settings, &bar) };
     }

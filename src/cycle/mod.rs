@@ -364,20 +364,20 @@ impl<'a> Cycle<'a> {
         };
         Motion { half_steps: self.phases.iter().map(half_step).collect() }
     }
+}
 
-    /// Θ of a motion.
-    pub fn theta(&self, motion: &Motion) -> Vec<f64> {
-        let mut theta = Vec::with_capacity(self.dimension());
-        for h in &motion.half_steps {
-            theta.extend_from_slice(&h.q_final);
-            theta.push(h.beta_final);
-            theta.extend_from_slice(&h.qd_final);
-            theta.push(h.betad_final);
-            theta.extend(h.q_interior.iter().flatten());
-            theta.push(h.duration);
-        }
-        theta
+/// Θ of a motion.
+pub fn theta(motion: &Motion) -> Vec<f64> {
+    let mut theta = Vec::new();
+    for h in &motion.half_steps {
+        theta.extend_from_slice(&h.q_final);
+        theta.push(h.beta_final);
+        theta.extend_from_slice(&h.qd_final);
+        theta.push(h.betad_final);
+        theta.extend(h.q_interior.iter().flatten());
+        theta.push(h.duration);
     }
+    theta
 }
 
 /// Where coordinate `k` comes from after a half step: index and sign.

@@ -4,7 +4,7 @@
 //! as in the search. But nothing of the search is taken over: the multipliers are fitted to the gradients ([`multipliers`]).
 //! A multiplier is a price: what the criterion would gain per unit by which its limit is loosened.
 
-use crate::cycle::{Cycle, Label, Place};
+use crate::cycle::{Cycle, Label, Place, theta};
 use crate::model::Gait;
 use crate::motion::{Criterion, Motion};
 use crate::search::refine::dips;
@@ -120,7 +120,7 @@ impl<'a> Linearized<'a> {
         speed: f64,
         motion: &Motion,
     ) -> Result<Linearized<'a>, Undefined> {
-        let theta = Cycle::new(gait, criterion, speed).theta(motion);
+        let theta = theta(motion);
         let mut cycle = Cycle::resolving(gait, criterion, speed, &theta).map_err(|_| Undefined)?;
         dips(&cycle).map_err(|_| Undefined)?.impose(&mut cycle);
         let scale = cycle.scale();

@@ -6,7 +6,6 @@
 use super::journal::{Journal, common, step};
 use super::local::Task;
 use super::multi_start::{Settings, search_from};
-use crate::cycle::Cycle;
 use crate::model::Gait;
 use crate::motion::Criterion;
 use crate::result::GaitResult;
@@ -32,8 +31,8 @@ pub fn sweep(
         for (c, &criterion) in criteria.iter().enumerate() {
             // The speed before, and the other criterion at this one.
             let mut neighbours: Vec<Vec<f64>> = Vec::new();
-            neighbours.extend(k.checked_sub(1).and_then(|before| theta(gait, &lines[c][before])));
-            neighbours.extend(lines[..c].iter().filter_map(|line| theta(gait, &line[k])));
+            neighbours.extend(k.checked_sub(1).and_then(|before| lines[c][before].theta()));
+            neighbours.extend(lines[..c].iter().filter_map(|line| line[k].theta()));
             let (result, fresh) = search_at(gait, criterion, speed, settings, &neighbours, journal);
             if fresh {
                 journal.point(&result);
@@ -93,7 +92,7 @@ fn carry(
     sources.extend((0..lines.len()).filter(|other| *other != c).map(|other| (other, k)));
     let (mut better, mut any_fresh) = (false, false);
     for (line, at) in sources {
-        let Some(theta) = theta(gait, &lines[line][at]) else { continue };
+        let Some(theta) = lines[line][at].theta() else { continue };
         let point = &lines[c][k];
         let (criterion, speed) = (point.criterion, point.speed);
         let name = format!("{} {} {speed} carried to", gait.description().key, criterion.name());
@@ -113,9 +112,4 @@ fn carry(
         }
     }
     (better, any_fresh)
-}
-
-/// Variables of a result's motion.
-pub fn theta(gait: &dyn Gait, result: &GaitResult) -> Option<Vec<f64>> {
-    result.motion().map(|m| Cycle::new(gait, result.criterion, result.speed).theta(&m))
 }

@@ -1,6 +1,6 @@
 //! Where one gait becomes cheaper than another: solved for, both gaits optimized at the crossing.
 
-use super::atlas::{search_at, theta};
+use super::atlas::search_at;
 use super::journal::Journal;
 use super::multi_start::Settings;
 use crate::model::Gait;
@@ -119,7 +119,7 @@ fn between(
     settings: &Settings,
     journal: &dyn Journal,
 ) -> Option<GaitResult> {
-    let from: Vec<Vec<f64>> = ends.into_iter().filter_map(|r| theta(gait, r)).collect();
+    let from: Vec<Vec<f64>> = ends.into_iter().filter_map(GaitResult::theta).collect();
     // The ends come from wide searches: their basins are what counts.
     let settings = Settings { starts: Some(1), ..settings.clone() };
     let (result, _) = search_at(gait, ends[0].criterion, speed, &settings, &from, journal);

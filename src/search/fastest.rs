@@ -1,6 +1,6 @@
 //! How fast a gait goes: the greatest speed and what ends it, and the nearest speed that works.
 
-use super::atlas::{search_at, theta};
+use super::atlas::search_at;
 use super::journal::{Journal, common, step};
 use super::local::{Conflict, Local, Task};
 use super::multi_start::{Settings, start};
@@ -37,7 +37,7 @@ pub fn maximum_speed(
     journal: &dyn Journal,
 ) -> Option<MaximumSpeed> {
     let fastest = results.iter().filter(|r| r.is_optimal()).max_by(|a, b| a.speed.total_cmp(&b.speed))?;
-    let from = theta(gait, fastest)?;
+    let from = fastest.theta()?;
     let name = format!("{} greatest speed", gait.description().key);
     step(journal, &name, &(common(gait, settings), fastest.speed, &from), || {
         climb(gait, fastest.speed, &from, settings)

@@ -3,7 +3,7 @@
 use super::evidence::Effort;
 use super::guess::{Plan, walk};
 use super::local::{Local, Task};
-use crate::cycle::Cycle;
+use crate::cycle::{Cycle, theta};
 use crate::model::Gait;
 use crate::motion::Criterion;
 use crate::sqp::{Control, Iteration, Problem, Values};
@@ -117,18 +117,17 @@ fn begin(task: &Task, seed: u64, k: usize, best: Option<&Optimum>) -> End {
 
 /// The k-th start of a seed: the default walk, then random ones.
 pub fn start(gait: &dyn Gait, criterion: Criterion, speed: f64, seed: u64, k: usize) -> Vec<f64> {
-    let d = gait.description();
-    let mut cycle = Cycle::new(gait, criterion, speed);
     if k == 0 {
-        return cycle.theta(&walk(gait, &Plan::default_for(d), speed));
+        return theta(&walk(gait, &Plan::default_for(gait.description()), speed));
     }
     let mut rng = stream(seed, k);
     // Of a few walks, the one that comes closest to satisfying the constraints is the safest start. But the safest lead to the
     // same few optima, so later starts take what comes.
     let draws = if k < BATCH { DRAWS } else { 1 };
+    let mut cycle = Cycle::new(gait, criterion, speed);
     let mut values = Values::zeros(cycle.equalities(), cycle.inequalities());
     let drawn = (0..draws).map(|_| {
-        let theta = cycle.theta(&walk(gait, &Plan::random(gait, &mut rng), speed));
+        let theta = theta(&walk(gait, &Plan::random(gait, &mut rng), speed));
         let violation = cycle.evaluate(&theta, &mut values).map_or(f64::INFINITY, |()| values.violation());
         (violation, theta)
     });

@@ -181,19 +181,16 @@ impl ActiveSet {
             }
         }
         for id in 0..self.place.len() {
-            // Most rows are in order, and cheaply seen to be.
-            if id >= 2 * self.n {
-                let i = id - 2 * self.n;
-                let value = dot(qp.row(i), &self.d) + qp.constants[i];
-                let in_order = match self.place[id] {
-                    Place::Working => true,
-                    Place::Off => value >= 0.0 && !qp.equality[i],
-                    Place::Full => value <= 0.0,
-                    Place::Empty => value >= 0.0,
-                };
-                if in_order {
-                    continue;
-                }
+            // Most constraints are in order, and cheaply seen to be.
+            let value = self.value(qp, id);
+            let in_order = match self.place[id] {
+                Place::Working => true,
+                Place::Off => value >= 0.0 && !self.equality(qp, id),
+                Place::Full => value <= 0.0,
+                Place::Empty => value >= 0.0,
+            };
+            if in_order {
+                continue;
             }
             if let Some((mut violation, _)) = self.contradiction(qp, id, reach) {
                 if self.equality(qp, id) && self.place[id] == Place::Off {
