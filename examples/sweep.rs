@@ -1,6 +1,6 @@
 //! What a trot costs at several speeds, each optimum starting from the one before: `cargo run --release --example sweep`.
 
-use piaffe::cycle::Cycle;
+use piaffe::cycle::theta;
 use piaffe::gaits::trot::Trot;
 use piaffe::motion::Criterion;
 use piaffe::search::multi_start::{Settings, search_from};
@@ -18,6 +18,6 @@ fn main() {
             "{speed} m/s: {:.3} N, half step {:.3} s",
             best.local.costs.energy, best.local.motion.half_steps[0].duration
         );
-        before = vec![Cycle::new(&Trot, Criterion::Energy, speed).theta(&best.local.motion)];
+        before = vec![theta(&best.local.motion)];
     }
 }

@@ -5,7 +5,8 @@
 Needs cargo, a C compiler and Python 3; makes a virtual environment with casadi, numpy and scipy where they are missing.
 CasADi evaluates in its virtual machine and as compiled C; the ratio is to the faster of the two. Times are medians of
 one cold optimization each, from the same walk, without building or compiling (half an hour for all of the C, kept
-with --keep); processor time of one thread, so that other work on the machine does not matter (wall time where there is no /proc).
+with --keep); processor time of one thread, all on one core (where the system can hold a program to one), so that neither other work
+on the machine nor differences between its cores matter much (wall time where there is no /proc).
 Ours includes the receipt. Costs differ a little: 43 nodes there, constraints between the nodes and exact |power| here.
 """
 import argparse
@@ -65,6 +66,14 @@ class Ours:
             return None
 
 
+def hold_to_one_core(other):
+    """This process (with the compilers that it starts) and another."""
+    if hasattr(os, "sched_setaffinity"):
+        core = max(os.sched_getaffinity(0))
+        for pid in (0, other):
+            os.sched_setaffinity(pid, {core})
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--rounds", type=int, default=3)
@@ -77,6 +86,7 @@ def main():
     from program import Program
 
     ours, points = Ours(), []
+    hold_to_one_core(ours.process.pid)
     folder = Path(arguments.keep or tempfile.mkdtemp(prefix="piaffe-peers-")).resolve()
     for gait in GAITS:
         for criterion in CRITERIA:
