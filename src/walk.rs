@@ -87,8 +87,7 @@ impl<'a> Walk<'a> {
     fn new(gait: &'a dyn Gait, motion: &Motion, shares: impl Fn(&Support) -> Vec<f64>) -> Result<Walk<'a>, Undefined> {
         let d = gait.description();
         // Neither criterion nor speed has a part in where the robot is.
-        let mut cycle = Cycle::new(gait, Criterion::Torque, 1.0);
-        cycle.simulate(&theta(motion))?;
+        let cycle = Cycle::resolving(gait, Criterion::Torque, 1.0, &theta(motion))?;
         let mut moments = Vec::new();
         let mut stance_foot = [0.0; 3];
         let mut start = 0.0;
