@@ -39,8 +39,17 @@ impl Scopes<'_> {
             let list =
                 |open: &str, close: &str| Layout::list(open, kept.iter().map(|k| Layout::Sum((*k).into())), close);
             indent(out, depth);
-            list("let [", "] = {").write(out, depth);
+            // What has only outputs to store hands nothing on.
+            if kept.is_empty() {
+                out.push('{');
+            } else {
+                list("let [", "] = {").write(out, depth);
+            }
             block.iter().flat_map(|s| &s.lines).for_each(|text| line(out, text, depth + 1));
+            if kept.is_empty() {
+                line(out, "}", depth);
+                continue;
+            }
             indent(out, depth + 1);
             list("[", "]").write(out, depth + 1);
             line(out, "};", depth);
