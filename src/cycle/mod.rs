@@ -18,6 +18,7 @@ mod sample;
 use crate::constraints::{ImpactConstraints, PathConstraint, path_constraints};
 use crate::cost::{Integral, integrate};
 use crate::instant::Glance;
+use crate::lgl::NODES;
 use crate::model::{Description, Gait, HalfSteps};
 use crate::motion::{Costs, Criterion, HalfStep, Motion};
 use crate::stance::Undefined;
@@ -237,6 +238,14 @@ impl<'a> Cycle<'a> {
     /// If the equations admit no such state.
     pub fn glance(&self, phase: usize, s: f64, glance: &mut Glance) -> Result<(), Undefined> {
         self.phases[phase].glance(self.gait, s, glance)
+    }
+
+    /// Values of a path constraint at the nodes of an element of the last simulated motion, and the coefficients of the quartic
+    /// through them.
+    pub fn quartic(&self, phase: usize, constraint: usize, element: usize) -> [[f64; NODES]; 2] {
+        let p = &self.phases[phase];
+        let values = p.in_element(&self.path[constraint], element);
+        [values, p.mesh.lobatto.interpolate(&values)]
     }
 
     /// Number of variables Θ.

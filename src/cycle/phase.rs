@@ -115,9 +115,13 @@ impl Phase {
 
     /// Where a path constraint is lowest in an element of the last simulated motion, as the quartic has it, near `from`.
     pub fn lowest(&self, constraint: &PathConstraint, element: usize, from: f64) -> Lowest {
+        Lowest::of(&self.mesh.lobatto, &self.in_element(constraint, element), from)
+    }
+
+    /// Values of a path constraint at the nodes of an element of the last simulated motion.
+    pub fn in_element(&self, constraint: &PathConstraint, element: usize) -> [f64; NODES] {
         let first = element * (NODES - 1);
-        let values = std::array::from_fn(|i| constraint.value(self.instants.row(first + i)));
-        Lowest::of(&self.mesh.lobatto, &values, from)
+        std::array::from_fn(|i| constraint.value(self.instants.row(first + i)))
     }
 
     /// Quantities of a node at the linearized point.

@@ -26,7 +26,8 @@ impl Effort {
     ///
     /// Starts that know nothing of each other end in each optimum with a probability that nobody knows. If any number of optima
     /// and any such probabilities are equally likely beforehand, w different ones from n starts let expect
-    /// w (n − 1) / (n − w − 2) (Boender and Rinnooy Kan).
+    /// w (n − 1) / (n − w − 2) (Boender and Rinnooy Kan). Optima that only informed starts led to are counted in w as well: where
+    /// there are such, more are expected than the estimate by itself would say.
     pub fn expected_optima(&self) -> Option<f64> {
         let Effort { successes: n, optima: w, .. } = *self;
         (n > w + 2).then(|| (w * (n - 1)) as f64 / (n - w - 2) as f64)

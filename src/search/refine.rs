@@ -8,10 +8,9 @@
 
 use crate::cycle::Cycle;
 use crate::instant::Glance;
-use crate::lgl::{Lobatto, NODES};
+use crate::lgl::NODES;
 use crate::polynomial::evaluate;
 use crate::stance::Undefined;
-use std::array::from_fn;
 
 /// Points of the grid per half step.
 const GRID: usize = 240;
@@ -106,15 +105,14 @@ struct Suspects {
 }
 
 fn suspects(cycle: &Cycle, phase: usize) -> Suspects {
-    let lobatto = Lobatto::new();
     let last = cycle.nodes(phase) - 1;
     let mut near = vec![false; cycle.path().len()];
     let mut instants = Vec::with_capacity(GRID + last);
     let mut grid = (1..GRID).map(|k| k as f64 / GRID as f64).peekable();
-    for first in (0..last).step_by(NODES - 1) {
+    for (element, first) in (0..last).step_by(NODES - 1).enumerate() {
         let mut look = false;
-        for (constraint, near) in cycle.path().iter().zip(&mut near) {
-            if comes_near(&lobatto, from_fn(|i| constraint.value(cycle.quantities(phase, first + i)))) {
+        for (constraint, near) in near.iter_mut().enumerate() {
+            if comes_near(cycle.quartic(phase, constraint, element)) {
                 (look, *near) = (true, true);
             }
         }
@@ -133,9 +131,8 @@ fn suspects(cycle: &Cycle, phase: usize) -> Suspects {
     Suspects { instants, constraints: (0..near.len()).filter(|k| near[*k]).collect() }
 }
 
-/// Whether a constraint with these values at the nodes of an element comes near zero in it.
-fn comes_near(lobatto: &Lobatto, values: [f64; NODES]) -> bool {
-    let quartic = lobatto.interpolate(&values);
+/// Whether a constraint with these values at the nodes of an element, and this quartic, comes near zero in it.
+fn comes_near([values, quartic]: [[f64; NODES]; 2]) -> bool {
     let looks = (1..LOOKS).map(|k| evaluate(&quartic, k as f64 / LOOKS as f64));
     let low = values.into_iter().chain(looks).fold(f64::INFINITY, f64::min);
     let high = values.into_iter().fold(f64::NEG_INFINITY, f64::max);

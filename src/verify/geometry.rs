@@ -9,37 +9,20 @@ use crate::model::{Description, Rotation};
 use nalgebra::{Vector2, Vector3};
 use num_traits::Zero;
 use std::fmt::Debug;
-use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
+use std::ops::{AddAssign, Mul, Neg, Sub, SubAssign};
 
 /// A vector in world axes.
 pub type Vec3<T = f64> = Vector3<T>;
 
 /// What can be added up and multiplied by numbers.
 pub trait Linear<T>:
-    Copy
-    + Debug
-    + Zero
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Neg<Output = Self>
-    + Mul<T, Output = Self>
-    + AddAssign
-    + SubAssign
+    Copy + Debug + Zero + Sub<Output = Self> + Neg<Output = Self> + Mul<T, Output = Self> + AddAssign + SubAssign
 {
 }
 
-impl<T, V> Linear<T> for V where
-    V: Copy
-        + Debug
-        + Zero
-        + Add<Output = V>
-        + Sub<Output = V>
-        + Neg<Output = V>
-        + Mul<T, Output = V>
-        + AddAssign
-        + SubAssign
-{
-}
+impl<T: Scalar> Linear<T> for T {}
+impl<T: Scalar> Linear<T> for Vector2<T> {}
+impl<T: Scalar> Linear<T> for Vector3<T> {}
 
 /// A geometry in numbers of a kind.
 pub trait Geometry<T: Scalar>: Copy + Debug {
