@@ -16,6 +16,7 @@ pub mod instant;
 mod lgl;
 pub mod model;
 pub mod motion;
+pub mod number;
 pub mod optimality;
 mod polynomial;
 pub mod readback;

@@ -46,15 +46,30 @@ fn the_solver_knows_no_robot() {
 #[test]
 fn the_verifier_shares_nothing_but_the_description_and_the_motion() {
     let verifier = sources("src/verify");
-    let own = ["crate::verify", "crate::model", "crate::motion"];
+    let own = ["crate::verify", "crate::number", "crate::model", "crate::motion"];
     none(lines_with(&verifier, "crate::").filter(|l| !own.iter().any(|o| l.contains(o))), "src/verify imports more");
     none(lines_with(&verifier, "Gait").filter(|l| !l.contains("GaitResult")), "src/verify uses generated kernels");
 }
 
 #[test]
+fn the_optimizer_reads_limits_for_itself() {
+    for folder in ["src/constraints", "src/cost", "src/cycle", "src/instant", "src/stance"] {
+        none(lines_with(&sources(folder), "verify::"), "what is optimized is read as it is verified");
+    }
+}
+
+#[test]
+fn kinds_of_numbers_know_no_robot() {
+    none(
+        lines_with(&sources("src/number"), "crate::").filter(|l| !l.contains("crate::number")),
+        "src/number imports more",
+    );
+}
+
+#[test]
 fn the_certificate_knows_the_verifiers_physics_alone() {
     let certificate = sources("src/certificate");
-    let own = ["crate::certificate", "crate::verify", "crate::model", "crate::motion"];
+    let own = ["crate::certificate", "crate::verify", "crate::number", "crate::model", "crate::motion"];
     none(lines_with(&certificate, "crate::").filter(|l| !own.iter().any(|o| l.contains(o))), "it imports more");
 }
 

@@ -15,10 +15,10 @@
 use super::taylor::{Ball, Taylor, above};
 use crate::model::Description;
 use crate::motion::HalfStep;
-use crate::verify::dual::Dual;
+use crate::number::Dual;
+use crate::number::Scalar;
 use crate::verify::instants::{Instants, State};
 use crate::verify::numbers::Numbers;
-use crate::verify::scalar::Scalar;
 use num_traits::Zero;
 
 /// Half width of the tube in which β and β̇ must stay, rad and rad/s.

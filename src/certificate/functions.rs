@@ -4,7 +4,7 @@
 //! it is from solving the equation that defines the function: y f = 1, y² = f, or (sin f)′ = f′ cos f.
 
 use super::taylor::{Taylor, UNIT, above};
-use crate::verify::scalar::Scalar;
+use crate::number::Scalar;
 use num_traits::Zero;
 use std::ops::Div;
 

@@ -17,12 +17,12 @@ pub mod taylor;
 
 use crate::model::Description;
 use crate::motion::{HalfStep, Motion};
+use crate::number::Scalar;
 use crate::verify::constraint::Constraint;
 use crate::verify::cycle::{closure, stance_leg, transition};
 use crate::verify::instants::{Instants, State};
 use crate::verify::margins::{Units, steepness};
 use crate::verify::numbers::Numbers;
-use crate::verify::scalar::Scalar;
 use crate::verify::{SMALLEST_GRID, VerifyError, check};
 use enclosure::{Piece, enclose};
 use num_traits::Zero;

@@ -3,10 +3,10 @@
 use super::TOLERANCE;
 use super::enclosure::{Model, Piece};
 use super::taylor::Taylor;
+use crate::number::Scalar;
 use crate::verify::constraint::Constraint;
 use crate::verify::instants::{Instants, State};
 use crate::verify::margins::{Units, clearance};
-use crate::verify::scalar::Scalar;
 
 /// How often a piece is halved at most.
 const HALVINGS: usize = 20;

@@ -1,7 +1,7 @@
 //! Between which numbers a Taylor model stays, as a whole and half by half.
 
 use super::taylor::{Ball, Taylor, UNIT, above};
-use crate::verify::scalar::Scalar;
+use crate::number::Scalar;
 
 /// How often an interval is halved to see more closely.
 const HALVINGS: usize = 12;

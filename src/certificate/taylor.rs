@@ -7,7 +7,7 @@
 //! Rounding is bounded, not switched: a sum or product of IEEE 754 is off by at most a share [`UNIT`] of itself, and
 //! every bound is made greater by more than its own evaluation can have lost (`above`).
 
-use crate::verify::scalar::assigning;
+use crate::number::assigning;
 use num_traits::Zero;
 use std::ops::{Add, Mul, Neg, Sub};
 

@@ -3,13 +3,12 @@
 //! The equations know the ground only at the feet: without this they admit a robot that hangs
 //! upside down below its own feet, and cheaply so.
 
-use super::PathConstraint;
+use super::{Limits, PathConstraint};
 use crate::instant::Quantities;
 use crate::model::Description;
-use crate::verify::numbers::Numbers;
-use crate::verify::scalar::Scalar;
+use crate::number::Scalar;
 
-pub fn constraint<T: Scalar>(d: &Description, limits: &Numbers<T>, y: &Quantities) -> PathConstraint<T> {
+pub fn constraint<T: Scalar>(d: &Description, limits: &Limits<T>, y: &Quantities) -> PathConstraint<T> {
     let terms = vec![(y.height(), T::from(1.0))];
     PathConstraint::linear("platform height".into(), d.leg_length(), -limits.min_platform_height, terms)
 }

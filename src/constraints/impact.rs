@@ -4,7 +4,7 @@
 
 use super::sharing::{applies, first, length, offsets, second};
 use crate::model::Description;
-use crate::verify::scalar::Scalar;
+use crate::number::Scalar;
 
 /// Formulas on the results of a touchdown kernel.
 #[derive(Clone, Debug)]

@@ -7,17 +7,18 @@
 mod actuator;
 mod ground;
 mod impact;
+mod limits;
 mod range;
 mod reaction;
 pub mod sharing;
 mod swing;
 
 pub use impact::ImpactConstraints;
+pub use limits::{JointLimits, Limits};
 
 use crate::instant::Quantities;
 use crate::model::Description;
-use crate::verify::numbers::Numbers;
-use crate::verify::scalar::Scalar;
+use crate::number::Scalar;
 use sharing::Share;
 
 /// A constraint on the quantities of an instant: `value ≥ 0`.
@@ -45,11 +46,11 @@ pub enum Form<T = f64> {
 
 /// All path constraints of a gait.
 pub fn path_constraints(description: &Description) -> Vec<PathConstraint> {
-    path_constraints_of(description, &Numbers::new(description))
+    path_constraints_of(description, &Limits::new(description))
 }
 
 /// The same with limits that are numbers of any kind; units are the description's.
-pub fn path_constraints_of<T: Scalar>(description: &Description, limits: &Numbers<T>) -> Vec<PathConstraint<T>> {
+pub fn path_constraints_of<T: Scalar>(description: &Description, limits: &Limits<T>) -> Vec<PathConstraint<T>> {
     let y = Quantities::new(description);
     let mut list = actuator::constraints(description, limits, &y);
     list.extend(reaction::constraints(description, limits, &y));

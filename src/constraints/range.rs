@@ -1,12 +1,11 @@
 //! Joint ranges: lower ≤ q ≤ upper stop over the whole step.
 
-use super::PathConstraint;
+use super::{Limits, PathConstraint};
 use crate::instant::Quantities;
 use crate::model::Description;
-use crate::verify::numbers::Numbers;
-use crate::verify::scalar::Scalar;
+use crate::number::Scalar;
 
-pub fn constraints<T: Scalar>(d: &Description, limits: &Numbers<T>, y: &Quantities) -> Vec<PathConstraint<T>> {
+pub fn constraints<T: Scalar>(d: &Description, limits: &Limits<T>, y: &Quantities) -> Vec<PathConstraint<T>> {
     let mut list = Vec::new();
     for (j, (joint, limits)) in d.joints.iter().zip(&limits.joints).enumerate() {
         let [lower, upper] = limits.range;

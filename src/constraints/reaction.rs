@@ -1,12 +1,11 @@
 //! Stance reaction (§4.2): Fy ≥ Fmin, and the tangential part at most μ Fy.
 
-use super::{Form, PathConstraint};
+use super::{Form, Limits, PathConstraint};
 use crate::instant::Quantities;
 use crate::model::Description;
-use crate::verify::numbers::Numbers;
-use crate::verify::scalar::Scalar;
+use crate::number::Scalar;
 
-pub fn constraints<T: Scalar>(d: &Description, limits: &Numbers<T>, y: &Quantities) -> Vec<PathConstraint<T>> {
+pub fn constraints<T: Scalar>(d: &Description, limits: &Limits<T>, y: &Quantities) -> Vec<PathConstraint<T>> {
     let weight = d.total_mass() * d.gravity;
     let mut list = vec![PathConstraint::linear(
         "vertical force".into(),

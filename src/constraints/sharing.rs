@@ -12,12 +12,10 @@
 //! move alike, take the same impulse in their plane; across it they take what keeps the robot from turning. Nothing is left
 //! against pitching, which must not be asked for: it never is where the hips are level with the mass centre.
 
-use super::{Form, PathConstraint};
+use super::{Form, Limits, PathConstraint};
 use crate::instant::{Quantities, Shared};
 use crate::model::{Description, Leg};
-use crate::verify::dual::Dual;
-use crate::verify::numbers::Numbers;
-use crate::verify::scalar::Scalar;
+use crate::number::{Dual, Scalar};
 
 /// Mounts nearer than this are at one place, m.
 const SAME: f64 = 1e-9;
@@ -87,7 +85,7 @@ enum Limit<T> {
     Actuator { bound: T, torque: T, rate: f64 },
 }
 
-pub fn constraints<T: Scalar>(d: &Description, limits: &Numbers<T>, y: &Quantities) -> Vec<PathConstraint<T>> {
+pub fn constraints<T: Scalar>(d: &Description, limits: &Limits<T>, y: &Quantities) -> Vec<PathConstraint<T>> {
     let mut list = Vec::new();
     if !applies(d) {
         return list;

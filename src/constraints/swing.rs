@@ -3,13 +3,12 @@
 //! Divided by 4 s (1 − s) it reads clearance ≥ h, which stays meaningful at both ends, where height
 //! and parabola vanish together and their slopes decide.
 
-use super::PathConstraint;
+use super::{Limits, PathConstraint};
 use crate::instant::Quantities;
 use crate::model::Description;
-use crate::verify::numbers::Numbers;
-use crate::verify::scalar::Scalar;
+use crate::number::Scalar;
 
-pub fn constraint<T: Scalar>(d: &Description, limits: &Numbers<T>, y: &Quantities) -> PathConstraint<T> {
+pub fn constraint<T: Scalar>(d: &Description, limits: &Limits<T>, y: &Quantities) -> PathConstraint<T> {
     let terms = vec![(y.clearance(), T::from(1.0))];
     PathConstraint::linear("swing clearance".into(), d.leg_length(), -limits.swing_clearance, terms)
 }

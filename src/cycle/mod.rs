@@ -148,7 +148,7 @@ impl<'a> Cycle<'a> {
     pub fn with_elements(gait: &'a dyn Gait, criterion: Criterion, speed: f64, elements: usize) -> Cycle<'a> {
         let d = gait.description();
         let variables = Variables::new(d);
-        let phases: Vec<Phase> = (0..d.phases()).map(|k| Phase::new(d, k, elements)).collect();
+        let phases: Vec<Phase> = (0..d.phases()).map(|k| Phase::new(d, stance_leg(d, k), elements)).collect();
         let impact = ImpactConstraints::new(d);
         let n = variables.total();
         Cycle {
@@ -387,6 +387,14 @@ pub fn theta(motion: &Motion) -> Vec<f64> {
         theta.push(h.duration);
     }
     theta
+}
+
+/// Leg that half step `k` stands on.
+pub(crate) fn stance_leg(d: &Description, k: usize) -> usize {
+    match d.half_steps {
+        HalfSteps::Mirrored => 0,
+        HalfSteps::Distinct => k,
+    }
 }
 
 /// Where coordinate `k` comes from after a half step: index and sign.

@@ -24,6 +24,15 @@ impl Description {
         numbers
     }
 
+    /// A description whose numbers are `slopes`, by index, and else 0: a direction in which a description can change.
+    pub fn direction(&self, slopes: &[(usize, f64)]) -> Description {
+        let mut numbers = vec![0.0; self.numbers().len()];
+        slopes.iter().for_each(|(index, slope)| numbers[*index] = *slope);
+        let (mut direction, mut rest) = (self.clone(), numbers.into_iter());
+        direction.for_each_number(&mut |number| *number = rest.next().unwrap_or(0.0));
+        direction
+    }
+
     /// Visits all numbers in their order.
     pub fn for_each_number(&mut self, visit: &mut impl FnMut(&mut f64)) {
         self.for_each_measured(visit);

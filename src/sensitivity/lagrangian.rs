@@ -4,19 +4,18 @@
 //! along it. The end of a half step is part of Θ. A row of L at a dip between nodes is the quartic through the nodes, as in the
 //! program; the dip's motion does not matter (envelope theorem).
 
-use crate::constraints::{ImpactConstraints, path_constraints_of};
+use crate::constraints::{ImpactConstraints, Limits, path_constraints_of};
 use crate::cycle::{CLOSURE, Place, renamed};
 use crate::instant::{Quantities, direction};
 use crate::model::{Description, Lever};
 use crate::motion::{HalfStep, Motion};
+use crate::number::{Dual, Scalar};
 use crate::optimality::Linearized;
-use crate::verify::dual::Dual;
 use crate::verify::impact::{Impact, impact_of};
 use crate::verify::instants::State;
 use crate::verify::multibody::Multibody;
 use crate::verify::numbers::Numbers;
 use crate::verify::phase::Phase;
-use crate::verify::scalar::Scalar;
 use num_traits::Zero;
 
 /// Parameters that are taken together.
@@ -60,13 +59,15 @@ impl<'a> Slopes<'a> {
             }
         }
         let numbers = Numbers::of(d, numbers);
+        let limits =
+            Limits::along(d, &std::array::from_fn(|lane| d.direction(levers.get(lane).map_or(&[], |l| l.slopes))));
         let landings = (0..d.phases()).map(|k| self.landing(&numbers, k)).collect::<Option<Vec<_>>>()?;
 
         let mut lagrangian = Number::zero();
-        let (mut travel, impact) = (Number::zero(), ImpactConstraints::with(d, numbers.friction));
+        let (mut travel, impact) = (Number::zero(), ImpactConstraints::with(d, limits.friction));
         for (k, landing) in landings.iter().enumerate() {
             let before = (k + d.phases() - 1) % d.phases();
-            lagrangian += self.half_step(&numbers, k, &landings[before].impact, &mut travel)?;
+            lagrangian += self.half_step(&numbers, &limits, k, &landings[before].impact, &mut travel)?;
             lagrangian -= landing.height.scale(m.equalities[CLOSURE * k + 2] / d.leg_length());
             let end = [&landing.impact.impulse.as_slice()[..d.positions()], &[landing.impact.leaving.y]].concat();
             for (i, multiplier) in self.priced() {
@@ -79,7 +80,7 @@ impl<'a> Slopes<'a> {
             let bounds = self.motion.half_steps.len();
             let own = m.bounds.len() / bounds;
             let nu = m.bounds[(k + 1) * own - 1];
-            lagrangian += numbers.half_step_duration[usize::from(nu < 0.0)].scale(nu);
+            lagrangian += limits.half_step_duration[usize::from(nu < 0.0)].scale(nu);
         }
         let speed = m.equalities.last().copied().unwrap_or(0.0);
         let cost = m.values.objective;
@@ -101,12 +102,14 @@ impl<'a> Slopes<'a> {
     /// The landing that ends half step `k`, where Θ has it.
     fn landing(&self, numbers: &Numbers<Number>, k: usize) -> Option<Landing> {
         let (d, h) = (self.d, &self.motion.half_steps[k]);
+        let stance = self.linearized.cycle.stance_leg(k);
+        let landing = 1 - stance;
         let constants = |values: Vec<f64>| -> Vec<Number> { values.into_iter().map(Number::constant).collect() };
         let q = constants(d.complete(&h.q_final, h.beta_final));
         let qd = constants(d.complete(&h.qd_final, h.betad_final));
         let mut multibody = Multibody::with(d, numbers.clone());
-        let impact = impact_of(&mut multibody, 1 - k, &q, &qd)?;
-        let height = multibody.foot(1 - k).position.y - multibody.foot(k).position.y;
+        let impact = impact_of(&mut multibody, landing, &q, &qd)?;
+        let height = multibody.foot(landing).position.y - multibody.foot(stance).position.y;
         Some(Landing { impact, height })
     }
 
@@ -114,6 +117,7 @@ impl<'a> Slopes<'a> {
     fn half_step(
         &self,
         numbers: &Numbers<Number>,
+        limits: &Limits<Number>,
         k: usize,
         impact: &Impact<Number>,
         travel: &mut Number,
@@ -128,7 +132,7 @@ impl<'a> Slopes<'a> {
         half_step.qd_initial = (0..d.prescribed()).map(|j| rate(d.prescribed_index(j))).collect();
         half_step.betad_initial = rate(d.unactuated);
         let duration = self.motion.half_steps[k].duration;
-        let mut phase = Phase::with(d, numbers.clone(), &half_step, k, k + 1).ok()?;
+        let mut phase = Phase::with(d, numbers.clone(), &half_step, cycle.stance_leg(k), k + 1).ok()?;
 
         // β and σ at the end: these numbers change σ(q, q̇) of the wanted end and of the motion's alike.
         let [beta, betad] = phase.beta_end();
@@ -151,7 +155,7 @@ impl<'a> Slopes<'a> {
                     .for_each(|(node, part)| rows[node].push((constraint, multiplier * part)));
             }
         }
-        let constraints = path_constraints_of(d, numbers);
+        let constraints = path_constraints_of(d, limits);
         let mut state = State::new(d);
         for (node, (weights, rows)) in weights.iter().zip(&rows).enumerate() {
             let share = cycle.instant(k, node);
@@ -178,7 +182,8 @@ impl<'a> Slopes<'a> {
         let nq = d.orientations();
         let mut momentum = vec![0.0; 1 + 2 * nq];
         let (q, qd) = (d.complete(&h.q_final, h.beta_final), d.complete(&h.qd_final, h.betad_final));
-        self.linearized.cycle.gait().momentum(k, &q, &qd, &mut momentum);
+        let cycle = &self.linearized.cycle;
+        cycle.gait().momentum(cycle.stance_leg(k), &q, &qd, &mut momentum);
         [momentum[1 + d.unactuated], momentum[1 + nq + d.unactuated]]
     }
 }

@@ -1,6 +1,6 @@
 //! A half step of the gait and the landing that ends it, with what small deviations need to know of them.
 
-use crate::cycle::{elements, renamed};
+use crate::cycle::{elements, renamed, stance_leg};
 use crate::model::Gait;
 use crate::motion::{HalfStep, Motion};
 use crate::sqp::dot;
@@ -70,20 +70,21 @@ impl Passage {
     pub fn new(gait: &dyn Gait, motion: &Motion, k: usize) -> Result<Passage, Undefined> {
         let d = gait.description();
         let next = (k + 1) % motion.half_steps.len();
+        let leg = stance_leg(d, k);
         let half_step = &motion.half_steps[k];
         let mesh = Mesh::new(elements(d), d.polynomial_order);
         let layout = Layout::new(d, &mesh.basis);
-        let parameters = parameters(gait, half_step, k, &layout);
-        let mut stance = Stance::new(d, &mesh, k);
-        stance.integrate(gait, k, &mesh, &parameters)?;
-        stance.differentiate(gait, k, &mesh, &parameters);
+        let parameters = parameters(gait, half_step, leg, &layout);
+        let mut stance = Stance::new(d, &mesh, leg);
+        stance.integrate(gait, leg, &mesh, &parameters)?;
+        stance.differentiate(gait, leg, &mesh, &parameters);
         let last = mesh.nodes.len() - 1;
         let row = |of: &[f64]| [layout.beta(), layout.sigma()].map(|p| of[last * layout.len() + p]);
 
-        let mut at = stance::State::new(d, k);
+        let mut at = stance::State::new(d, leg);
         let mut instant = |share: f64| {
-            stance.at(gait, k, &mesh, &parameters, share, &mut at)?;
-            let state = State { q: at.q.clone(), qd: at.qd.clone(), qdd: acceleration(gait, k, &at) };
+            stance.at(gait, leg, &mesh, &parameters, share, &mut at)?;
+            let state = State { q: at.q.clone(), qd: at.qd.clone(), qdd: acceleration(gait, leg, &at) };
             Ok(Instant { time: share * half_step.duration, state, sigma: at.sigma })
         };
         let instants: Result<Vec<Instant>, Undefined> =
@@ -91,12 +92,12 @@ impl Passage {
         let instants = instants?;
         let (by_beta, by_sigma, _) = stance.partials(last);
         Ok(Passage {
-            leg: k,
+            leg,
             duration: half_step.duration,
             flow: [row(&stance.beta_p), row(&stance.sigma_p)],
-            landing: Landing::new(gait, k, instant(1.0)?.state, [by_beta, by_sigma]),
+            landing: Landing::new(gait, leg, instant(1.0)?.state, [by_beta, by_sigma]),
             instants,
-            next: Start::new(gait, &motion.half_steps[next], next),
+            next: Start::new(gait, &motion.half_steps[next], stance_leg(d, next)),
         })
     }
 

@@ -7,9 +7,9 @@ use super::impact::impact_of;
 use super::margins::Units;
 use super::multibody::Multibody;
 use super::numbers::Numbers;
-use super::scalar::Scalar;
 use crate::model::{Description, HalfSteps};
 use crate::motion::HalfStep;
+use crate::number::Scalar;
 
 /// Leg that half step `index` stands on.
 pub fn stance_leg(description: &Description, index: usize) -> usize {

@@ -1,9 +1,9 @@
 //! What can keep a motion from being verified at all, and the checks of its shape.
 
 use super::integrate::Stop;
-use super::scalar::Scalar;
 use crate::model::Description;
 use crate::motion::{HalfStep, Motion};
+use crate::number::Scalar;
 
 /// Fewest points of a grid: quadrature needs four neighbours.
 pub const SMALLEST_GRID: usize = 5;

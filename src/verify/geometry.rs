@@ -4,8 +4,8 @@
 //! too, so both geometries give the same bits, the plane in a fraction of the time.
 
 use super::numbers::Rigid;
-use super::scalar::Scalar;
 use crate::model::{Description, Rotation};
+use crate::number::Scalar;
 use nalgebra::{Vector2, Vector3};
 use num_traits::Zero;
 use std::fmt::Debug;

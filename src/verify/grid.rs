@@ -6,12 +6,12 @@
 use super::constraint::{Constraint, Tally};
 use super::error::VerifyError;
 use super::instants::{Instants, State};
-use super::lanes::Lanes;
 use super::margins::{Units, clearance, steepness};
 use super::numbers::Numbers;
 use super::phase::Phase;
 use super::quadrature::{integral, integral_of_magnitude};
 use crate::motion::HalfStep;
+use crate::number::Lanes;
 use std::array::from_fn;
 
 /// What a half step adds up to.

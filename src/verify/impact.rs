@@ -9,8 +9,8 @@
 
 use super::geometry::Vec3;
 use super::multibody::Multibody;
-use super::scalar::Scalar;
 use crate::model::Description;
+use crate::number::Scalar;
 
 /// Pivots below this share of the largest entry make a system singular.
 const SINGULAR: f64 = 1e-13;

@@ -3,10 +3,10 @@
 use super::geometry::{Plane, Vec3};
 use super::numbers::Numbers;
 use super::polynomial::Polynomials;
-use super::scalar::Scalar;
 use super::support::Support;
 use crate::model::Description;
 use crate::motion::HalfStep;
+use crate::number::Scalar;
 
 /// The instants of a half step: Q(t) is prescribed, β and β̇ come from outside.
 #[derive(Clone, Debug)]

@@ -4,8 +4,8 @@
 //! `tableau.rs`). A right-hand side that is not defined, or a result that is not
 //! finite, counts as too large a step; steps that get too small or too many end the integration.
 
-use super::scalar::Scalar;
 use super::tableau::{A, ALL_STAGES, C, D, E3, E5, Row, STAGES};
+use crate::number::Scalar;
 
 /// Steps, accepted or not, after which an integration is given up.
 const MAX_STEPS: usize = 10_000;

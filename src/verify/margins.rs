@@ -4,9 +4,9 @@ use super::constraint::Constraint;
 use super::geometry::Vec3;
 use super::instants::State;
 use super::numbers::Numbers;
-use super::scalar::Scalar;
 use super::support::leg_length;
 use crate::model::Description;
+use crate::number::Scalar;
 
 /// The natural units of margins; see [`constraint`](super::constraint).
 #[derive(Clone, Copy, Debug)]

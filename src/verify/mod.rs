@@ -11,23 +11,21 @@
 //!    (eq. 13, 14) by quadrature that respects changes of sign ([`quadrature`]);
 //! 4. the impacts ([`impact`], eq. 12) and how nearly the cycle closes (`cycle.rs`, eq. 16–19, 23, 24).
 //!
-//! From Q(t), β and β̇ to every margin the physics is written for any kind of number ([`scalar`]) and with the robot's
-//! numbers as such ([`numbers`]): plain ones, those of several instants side by side ([`lanes`]), those that carry
-//! derivatives ([`dual`]), or functions of time with bounds.
+//! From Q(t), β and β̇ to every margin the physics is written for any kind of number ([`number`](crate::number)) and with the robot's
+//! numbers as such ([`numbers`]): plain ones, those of several instants side by side ([`Lanes`](crate::number::Lanes)), those that carry
+//! derivatives ([`Dual`](crate::number::Dual)), or functions of time with bounds.
 //!
 //! Sines and cosines come from the `libm` crate and everything else is arithmetic of IEEE 754, in a
 //! fixed order: the same motion gets the same receipt, to the bit, on every machine.
 
 pub mod constraint;
 pub mod cycle;
-pub mod dual;
 mod error;
 pub mod geometry;
 mod grid;
 pub mod impact;
 pub mod instants;
 pub mod integrate;
-pub mod lanes;
 pub mod margins;
 pub mod multibody;
 pub mod numbers;
@@ -36,7 +34,6 @@ pub mod polynomial;
 pub mod quadrature;
 mod receipt;
 mod sample;
-pub mod scalar;
 pub mod support;
 mod tableau;
 

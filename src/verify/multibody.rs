@@ -15,8 +15,8 @@
 
 use super::geometry::{Geometry, Space, Vec3};
 use super::numbers::Numbers;
-use super::scalar::Scalar;
 use crate::model::{Description, Rotation};
+use crate::number::Scalar;
 use num_traits::Zero;
 
 /// A mechanism at one state. The workspace is allocated once; no method allocates.

@@ -2,8 +2,8 @@
 //! about which axis) stays in the description.
 
 use super::geometry::Vec3;
-use super::scalar::Scalar;
 use crate::model::{Body, Description, Member};
+use crate::number::Scalar;
 
 /// Masses, lengths and limits of a [`Description`], in its units and order.
 #[derive(Clone, Debug)]

@@ -4,9 +4,9 @@ use super::error::{VerifyError, check_half_step};
 use super::instants::{Instants, State};
 use super::integrate::{Solution, integrate};
 use super::numbers::Numbers;
-use super::scalar::Scalar;
 use crate::model::Description;
 use crate::motion::HalfStep;
+use crate::number::Scalar;
 
 /// Error allowed in a step of the integration of (β, β̇), rad and rad/s.
 pub const TOLERANCE: f64 = 1e-12;

@@ -5,8 +5,8 @@
 //! for a value and a rate), p(s) = c₀ + c₁(s − s₀) + c₂(s − s₀)(s − s₁) + …, where the cₖ are divided
 //! differences. One interior value makes the paper's fourth order; any number is allowed.
 
-use super::scalar::Scalar;
 use crate::motion::HalfStep;
+use crate::number::Scalar;
 
 /// The prescribed coordinates of one half step as functions of time.
 #[derive(Clone, Debug)]

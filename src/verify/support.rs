@@ -15,8 +15,8 @@ use super::geometry::{Geometry, Space, Vec3};
 use super::instants::State;
 use super::multibody::Multibody;
 use super::numbers::Numbers;
-use super::scalar::Scalar;
 use crate::model::{Description, Rotation};
+use crate::number::Scalar;
 use num_traits::Zero;
 
 /// f1 below this share of (mass × leg²) counts as zero.

@@ -1,7 +1,7 @@
 //! Numbers of twice the precision, to judge those that claim to know their own: sums of two plain numbers.
 
 use num_traits::Zero;
-use piaffe::verify::scalar::Scalar;
+use piaffe::number::Scalar;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// high + low, with |low| ≤ ulp(high)/2: about 31 digits.

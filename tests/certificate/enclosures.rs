@@ -6,11 +6,11 @@ use piaffe::certificate::enclosure::{Model, enclose};
 use piaffe::certificate::taylor::Taylor;
 use piaffe::model::Description;
 use piaffe::motion::HalfStep;
+use piaffe::number::Scalar;
 use piaffe::verify::instants::{Instants, State};
 use piaffe::verify::integrate::integrate;
 use piaffe::verify::margins::{Units, clearance};
 use piaffe::verify::numbers::Numbers;
-use piaffe::verify::scalar::Scalar;
 
 /// The method's own coefficients have 16 digits.
 const REFERENCE: f64 = 1e-15;

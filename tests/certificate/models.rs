@@ -2,7 +2,7 @@
 
 use crate::double::Double;
 use piaffe::certificate::taylor::Taylor;
-use piaffe::verify::scalar::Scalar;
+use piaffe::number::Scalar;
 use proptest::prelude::*;
 
 /// Something to compute.

@@ -3,14 +3,14 @@
 use crate::motions::{gaits, stepping};
 use piaffe::model::Description;
 use piaffe::motion::HalfStep;
+use piaffe::number::Dual;
+use piaffe::number::Lanes;
+use piaffe::number::Scalar;
 use piaffe::verify::constraint::Constraint;
-use piaffe::verify::dual::Dual;
 use piaffe::verify::instants::{Instants, State};
-use piaffe::verify::lanes::Lanes;
 use piaffe::verify::margins::Units;
 use piaffe::verify::numbers::Numbers;
 use piaffe::verify::phase::Phase;
-use piaffe::verify::scalar::Scalar;
 
 /// Everything about the end of a half step on leg 1: (β, β̇), then all margins.
 fn outcome<T: Scalar>(d: &Description, numbers: Numbers<T>, half_step: &HalfStep<T>) -> Vec<T> {

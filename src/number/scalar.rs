@@ -1,6 +1,6 @@
 //! The numbers that a motion is evaluated with.
 //!
-//! The physics is written once, for any of them: plain numbers give receipts, dual numbers ([`dual`](super::dual))
+//! The physics is written once, for any of them: plain numbers give receipts, dual numbers ([`Dual`](super::Dual))
 //! exact derivatives, and sets of numbers or functions of time proofs.
 
 use nalgebra::{ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign};

@@ -1,0 +1,12 @@
+//! Kinds of numbers that a formula can be evaluated with, once it is written for any [`Scalar`].
+//!
+//! They know nothing of robots: optimizer and verifier both calculate with them.
+
+mod dual;
+mod lanes;
+mod scalar;
+
+pub use dual::Dual;
+pub use lanes::Lanes;
+pub use scalar::Scalar;
+pub(crate) use scalar::assigning;
