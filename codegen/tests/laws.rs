@@ -7,7 +7,9 @@ use common::{Derived, FAMILIES, GAITS, files, shipped, specification};
 use piaffe_codegen::dynamics::{Input, whole_kernels};
 use piaffe_codegen::mechanism::Whole;
 use piaffe_codegen::program::Program;
+use piaffe_codegen::spec::name::{ITEMS, type_name};
 use piaffe_codegen::{Generated, RobotFiles, SpecFile, generate, generate_families};
+use std::collections::BTreeSet;
 use std::fmt::Write;
 use syn::visit::{self, Visit};
 use syn::visit_mut::{self, VisitMut};
@@ -214,6 +216,64 @@ fn kernels_are_straight_lines() {
         assert!(law.longest <= 500, "{name}: {} bindings in one scope", law.longest);
         assert!(!source.contains("unsafe"), "{name}");
     }
+}
+
+/// Types and values that a module has or needs by a name of its own, beside what is called like the gait.
+#[derive(Default)]
+struct Items(BTreeSet<String>);
+
+impl Items {
+    fn add(&mut self, name: &syn::Ident) {
+        let name = name.to_string();
+        if name.starts_with(|c: char| c.is_ascii_uppercase()) {
+            self.0.insert(name);
+        }
+    }
+}
+
+impl<'ast> Visit<'ast> for Items {
+    fn visit_path(&mut self, path: &'ast syn::Path) {
+        if path.leading_colon.is_none() {
+            self.add(&path.segments[0].ident);
+        }
+        visit::visit_path(self, path);
+    }
+
+    fn visit_item_struct(&mut self, item: &'ast syn::ItemStruct) {
+        self.add(&item.ident);
+        visit::visit_item_struct(self, item);
+    }
+
+    fn visit_item_static(&mut self, item: &'ast syn::ItemStatic) {
+        self.add(&item.ident);
+        visit::visit_item_static(self, item);
+    }
+
+    fn visit_const_param(&mut self, parameter: &'ast syn::ConstParam) {
+        self.add(&parameter.ident);
+    }
+
+    fn visit_type_param(&mut self, parameter: &'ast syn::TypeParam) {
+        self.add(&parameter.ident);
+    }
+}
+
+/// A gait whose type would be one of these is refused by the specification, and no other.
+#[test]
+fn what_a_gaits_module_needs_cannot_be_a_gaits_name() {
+    let mut needed = Items::default();
+    for (name, source) in generated("model-spec/") {
+        let gait = name.trim_end_matches(".rs").rsplit('/').next().unwrap();
+        if !["gaits", "families", "whole"].contains(&gait) {
+            let mut items = Items::default();
+            items.visit_file(&syn::parse_file(&source).unwrap());
+            assert!(items.0.remove(&type_name(gait)), "{name} has a type of its own");
+            needed.0.append(&mut items.0);
+        }
+    }
+    let mut known: Vec<&str> = ITEMS.to_vec();
+    known.sort_unstable();
+    assert_eq!(needed.0.iter().collect::<Vec<_>>(), known, "write these into spec/name.rs");
 }
 
 /// The pinned sine and cosine: arithmetic and bits, no branch, no panic.

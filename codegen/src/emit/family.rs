@@ -5,10 +5,10 @@ use super::function::{Function, functions};
 use super::gait::{constant, getter, header, items, methods};
 use super::layout::Layout;
 use super::modules::{file_name, key, paths, tree};
-use super::type_name;
 use crate::dynamics::family_kernels;
 use crate::mechanism::{Family, Parameter, Sign};
 use crate::program::Search;
+use crate::spec::name::{FAMILIES_FOLDER, type_name};
 
 /// Source of the module of one gait of a family. `runtime` is the path of the module with the `Gait` trait.
 pub fn family_source(family: &Family, robot: &str, latex: &str, runtime: &str, origin: &str) -> String {
@@ -63,7 +63,7 @@ pub fn family_source(family: &Family, robot: &str, latex: &str, runtime: &str, o
 
 /// Name of the generated file of a gait.
 pub fn family_file_name(robot: &str, gait: &str) -> String {
-    format!("family/{}", file_name(robot, gait))
+    format!("{FAMILIES_FOLDER}/{}", file_name(robot, gait))
 }
 
 /// Source of the module that holds the gaits of all families, and each robot's parameters.

@@ -1,11 +1,12 @@
 //! One kernel as one function: its signature and what is said of it.
 
+use super::batch;
 use super::body;
 use super::layout::{Layout, indent, line};
-use super::{batch, type_name};
 use crate::dynamics::{Kernel, Shape};
 use crate::expr::Ring;
 use crate::program::{Operations, Program, Search};
+use crate::spec::name::type_name;
 use crate::turns::in_turn;
 use std::cmp::Reverse;
 use std::fmt::Write;

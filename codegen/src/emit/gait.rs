@@ -4,9 +4,9 @@ use super::description::description;
 use super::function::{Function, base_name, functions};
 use super::layout::{Layout, indent, line};
 use super::modules::key;
-use super::type_name;
 use crate::dynamics::{Input, Kernel, LUMPS, PARAMETERS, Shape, kernels};
 use crate::mechanism::{Lever, Mechanism};
+use crate::spec::name::type_name;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Source of one gait's module, of a robot with or without a module of its own; `whole` is the module of the whole

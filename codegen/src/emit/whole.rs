@@ -4,9 +4,10 @@ use super::description::body;
 use super::function::{Function, functions};
 use super::gait::{constant, getter, header, items, methods};
 use super::layout::Layout;
-use super::modules::{WHOLE, key};
+use super::modules::key;
 use crate::dynamics::whole_kernels;
 use crate::mechanism::{Whole, WholeJoint, WholeLeg};
+use crate::spec::name::WHOLE;
 
 /// Source of the module of a robot. `runtime` is the path of the module with the `Whole` trait; without it there
 /// are functions only.

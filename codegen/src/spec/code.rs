@@ -65,6 +65,8 @@ codes! {
     NotOnPlatform = "S021",
     /// A leg that could start with several joints and does not say which.
     AmbiguousFirstJoint = "S022",
+    /// A number so small that what is computed from it would vanish.
+    Vanishing = "S023",
     /// A gait that does not have two virtual legs.
     NotTwoVirtualLegs = "S030",
     /// A leg that belongs to no virtual leg.

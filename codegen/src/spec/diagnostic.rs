@@ -17,6 +17,7 @@ use std::sync::Arc;
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 
 use super::Code;
+use super::name::is_visible;
 
 /// Byte offsets into the text of one file.
 pub type Span = Range<usize>;
@@ -70,6 +71,42 @@ pub struct Label {
     pub text: String,
 }
 
+impl Label {
+    fn visible(&self) -> Label {
+        let Source { path, text } = &self.source;
+        let text = if text.is_ascii() { text.clone() } else { in_place(text).into() };
+        let source = Source { path: visible(path, false).into(), text };
+        Label { source, span: self.span.clone(), text: visible(&self.text, false) }
+    }
+}
+
+/// A text whose every character can be seen; lines stay apart where `lines`.
+pub(crate) fn visible(text: &str, lines: bool) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '\n' if lines => shown.push(c),
+            _ if is_visible(c) => shown.push(c),
+            _ => shown.extend(c.escape_debug()),
+        }
+    }
+    shown
+}
+
+/// A source with something to be seen for every character that cannot, of as many bytes. The renderer does so in ASCII.
+fn in_place(text: &str) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c.len_utf8() {
+            _ if c.is_ascii() || is_visible(c) => shown.push(c),
+            2 => shown.push('¿'),
+            3 => shown.push('\u{fffd}'),
+            _ => shown.extend(['\u{fffd}', '?']),
+        }
+    }
+    shown
+}
+
 /// One mistake in a specification.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
@@ -90,7 +127,20 @@ impl Diagnostic {
     }
 
     /// The message with its source lines, carets and labels; plain text without colours.
+    ///
+    /// Names in it come from files: what would turn a terminal's colours on, or the direction of writing round, is escaped.
     pub fn render(&self) -> String {
+        let shown = Diagnostic {
+            code: self.code,
+            title: visible(&self.title, false),
+            primary: self.primary.visible(),
+            secondary: self.secondary.as_ref().map(Label::visible),
+            help: visible(&self.help, true),
+        };
+        shown.drawn()
+    }
+
+    fn drawn(&self) -> String {
         let title = Level::ERROR.primary_title(self.title.as_str()).id(self.code.as_str());
         let primary = snippet(&self.primary, AnnotationKind::Primary);
         let group = match &self.secondary {

@@ -69,6 +69,20 @@ impl Field<'_> {
             let title = format!("`{}` must be {}", self.path, bound.text());
             let label = format!("{unit}{}", bound.text());
             sink.report(Code::OutOfBounds, title, span, label, self.bounds_advice(number, bound));
+        } else if number != 0.0 && number.abs() < bound.least() {
+            let title = format!("`{}` is too small to compute with: {number:?}", self.path);
+            let least = bound.least();
+            let (label, help) = match bound {
+                Bound::Positive => (format!("{unit}at least {least:e}"), self.advice()),
+                _ => {
+                    let name = self.key.name;
+                    (
+                        format!("{unit}0, or at least {least:e} in size"),
+                        format!("write 0.0 in `{name}` where there is none"),
+                    )
+                }
+            };
+            sink.report(Code::Vanishing, title, span, label, help);
         } else {
             return Some(number);
         }

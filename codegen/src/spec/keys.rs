@@ -75,6 +75,16 @@ impl Bound {
         }
     }
 
+    /// The smallest number that is not zero. Quotients are taken of what is positive, so that must not only differ from
+    /// zero itself but its products too: a mass times two lengths, a share of a mass. Of others, products of two with
+    /// such a one must.
+    pub const fn least(self) -> f64 {
+        match self {
+            Self::Positive => 1e-30,
+            Self::Any | Self::NonNegative | Self::Angle => 1e-100,
+        }
+    }
+
     pub const fn text(self) -> &'static str {
         match self {
             Self::Any => "finite",

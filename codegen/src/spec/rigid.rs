@@ -54,16 +54,18 @@ impl Rigid {
     /// Whether some distribution of mass has this inertia: ∫ r rᵀ dm = ½ tr(I) 1 − I is positive semidefinite.
     pub fn is_possible(&self) -> bool {
         let trace: f64 = (0..3).map(|i| self.inertia[i][i]).sum();
-        // Some slack for data in decimal digits: a flat plate has exactly a zero here.
-        let slack = 1e-9 * trace;
-        let s = |i: usize, j: usize| if i == j { 0.5 * trace + slack } else { 0.0 } - self.inertia[i][j];
+        if trace == 0.0 {
+            return self.inertia.as_flattened().iter().all(|x| *x == 0.0);
+        }
+        // In units of the trace. Some slack for data in decimal digits: a flat plate has exactly a zero here.
+        let slack = 1e-9;
+        let s = |i: usize, j: usize| if i == j { 0.5 + slack } else { 0.0 } - self.inertia[i][j] / trace;
         let minor = |i: usize, j: usize| s(i, i) * s(j, j) - s(i, j) * s(i, j);
         let determinant = s(0, 0) * minor(1, 2) - s(0, 1) * (s(0, 1) * s(2, 2) - s(1, 2) * s(0, 2))
             + s(0, 2) * (s(0, 1) * s(1, 2) - s(1, 1) * s(0, 2));
-        let tiny = -1e-9 * trace * trace;
         (0..3).all(|i| s(i, i) >= 0.0)
-            && [(0, 1), (1, 2), (2, 0)].iter().all(|&(i, j)| minor(i, j) >= tiny)
-            && determinant >= tiny * trace
+            && [(0, 1), (1, 2), (2, 0)].iter().all(|&(i, j)| minor(i, j) >= -slack)
+            && determinant >= -slack
     }
 }
 

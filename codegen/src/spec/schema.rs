@@ -54,7 +54,7 @@ fn property(key: &Key, depth: usize) -> String {
         }
         Kind::Map(forms) => format!(
             "\"type\": \"object\", \"minProperties\": 1,\n\
-             {pad}  \"propertyNames\": {{ \"pattern\": \"^[A-Za-z][A-Za-z0-9_]*$\" }},\n\
+             {pad}  \"propertyNames\": {{ \"pattern\": \"^[A-Za-z][A-Za-z0-9_]{{0,99}}$\" }},\n\
              {pad}  \"additionalProperties\": {}\n{pad}",
             one_of(forms, depth + 1)
         ),

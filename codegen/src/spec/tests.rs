@@ -290,3 +290,20 @@ impl Dice {
         lines.join("\n")
     }
 }
+
+/// Whatever stands in a file or in its name, messages turn neither a terminal's colours on nor its writing round.
+#[test]
+fn messages_show_every_character() {
+    let (robot, path) = (read("robot.toml"), "a\n\u{1b}[31m\u{9b}b/robot.toml");
+    let hostile = "\u{202e}\u{200b}\u{9b}31m\u{e0001}";
+    for text in
+        [robot.replace("thigh", hostile), robot.replace("mass", hostile), format!("{robot}\nz = \u{1b}[31m{hostile}")]
+    {
+        let mistakes = parse_robot(path, &text).unwrap_err();
+        for shown in mistakes.iter().map(Diagnostic::render) {
+            let unseen = shown.chars().find(|c| *c != '\n' && !name::is_visible(*c));
+            assert_eq!(unseen, None, "{shown:?}");
+        }
+        assert!(mistakes[0].render().contains(r"a\n\u{1b}[31m\u{9b}b/robot.toml:"));
+    }
+}
