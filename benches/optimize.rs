@@ -4,7 +4,7 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use piaffe::gaits::GAITS;
 use piaffe::motion;
-use piaffe::result::GRID;
+use piaffe::verdict::GRID;
 use piaffe::search::local::{Local, Task};
 use piaffe::search::multi_start::start;
 use piaffe::sqp::Control;

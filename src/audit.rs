@@ -1,13 +1,12 @@
-//! What a result states, derived anew: from the specification and the motion's variables alone.
+//! What a result states, derived anew: from the question and the motion's variables alone.
 //!
-//! [`Readback`](crate::readback::Readback) refuses what contradicts itself; an audit says of each statement whether it was
-//! confirmed, with both numbers where it was not, or why it could not be checked.
+//! An audit says of each statement whether it was confirmed, with both numbers where it was not, or why it could not be
+//! checked. A statement that must be there and is not is one that does not hold.
 
-use crate::altered::Altered;
 use crate::model::Gait;
 use crate::motion::Motion;
-use crate::readback::gait_of;
-use crate::result::{GaitResult, KKT_RESIDUAL};
+use crate::origin::{gait_of, under_its_limits};
+use crate::result::GaitResult;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -21,6 +20,8 @@ const GIVEN: [&str; 6] = ["gait", "criterion", "speed", "variables", "fingerprin
 /// How it was found. That says nothing about the motion, and cannot be seen from it.
 const HISTORY: [&str; 7] =
     ["local_optima", "virtual_cost", "conflicts", "nearest_speed", "search", "seconds", "version"];
+/// What is absent, which is compared with what is.
+const ABSENT: &str = "not_examined";
 
 /// What became of a statement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -29,6 +30,8 @@ pub enum Verdict {
     Confirmed,
     NotConfirmed,
     NotChecked,
+    /// It is of how the motion was found, which does not follow from the motion.
+    NotDerivable,
 }
 
 /// A statement of a result: an entry of its file.
@@ -61,30 +64,75 @@ pub struct Audit {
 }
 
 impl Audit {
-    /// Checks all that a result says about its motion. `stated` is its file, `result` what was read from it.
+    /// Checks all that a result says about its motion.
+    pub fn of(result: &GaitResult, gaits: &[&dyn Gait]) -> Audit {
+        Audit::new(&serde_json::to_value(result).unwrap_or_default(), result, gaits)
+    }
+
+    /// The same, where `stated` is the file that `result` was read from: it may have entries that no result has.
     pub fn new(stated: &Value, result: &GaitResult, gaits: &[&dyn Gait]) -> Audit {
-        let entries = stated.as_object().into_iter().flatten();
-        let claims = entries.filter(|(key, value)| {
-            let empty = value.is_null() || value.as_array().is_some_and(Vec::is_empty);
-            !GIVEN.contains(&key.as_str()) && !HISTORY.contains(&key.as_str()) && !empty
-        });
-        let statements = match derived(result, gaits) {
+        let none = serde_json::Map::new();
+        let entries = stated.as_object().unwrap_or(&none);
+        let (history, claims): (Vec<_>, Vec<_>) = entries
+            .iter()
+            .filter(|(key, value)| !GIVEN.contains(&key.as_str()) && key.as_str() != ABSENT && !is_empty(value))
+            .partition(|(key, _)| HISTORY.contains(&key.as_str()));
+        let mut statements: Vec<Statement> = match derived(result, gaits) {
             Ok(found) => {
-                let entries = serde_json::to_value(&found).unwrap_or_default();
-                claims.map(|(key, value)| Statement::compared(key, value, &found, &entries)).collect()
+                let derived = serde_json::to_value(&found).unwrap_or_default();
+                let compared = claims.iter().map(|(key, value)| Statement::compared(key, value, &found, &derived));
+                compared.chain(missing(entries, result, &derived)).collect()
             }
             Err((verdict, reason)) => {
-                let alike = |(key, _): (&String, &Value)| Statement::whole(key, verdict, reason.clone());
-                claims.map(alike).collect()
+                claims.iter().map(|(key, _)| Statement::whole(key, verdict, reason.clone())).collect()
             }
         };
+        let of_search = "how it was found, which a motion does not show";
+        statements
+            .extend(history.iter().map(|(key, _)| Statement::whole(key, Verdict::NotDerivable, of_search.into())));
         Audit { name: result.name(), statements }
     }
 
     /// Whether everything that is stated about the motion was confirmed.
     pub fn is_confirmed(&self) -> bool {
-        !self.statements.is_empty() && self.statements.iter().all(|s| s.verdict == Verdict::Confirmed)
+        let mut of_motion = self.statements.iter().filter(|s| s.verdict != Verdict::NotDerivable).peekable();
+        of_motion.peek().is_some() && of_motion.all(|s| s.verdict == Verdict::Confirmed)
     }
+
+    /// The first statement that was not confirmed, in words.
+    pub fn objection(&self) -> Option<String> {
+        if self.is_confirmed() {
+            return None;
+        }
+        let open = |s: &&Statement| !matches!(s.verdict, Verdict::Confirmed | Verdict::NotDerivable);
+        let Some(statement) = self.statements.iter().find(open) else {
+            return Some("it states nothing about its motion".into());
+        };
+        let difference = statement.differences.first();
+        Some(match (&statement.reason, difference) {
+            (Some(reason), _) => format!("`{}`: {reason}", statement.entry),
+            (None, Some(d)) => format!("it states {} for {}, but its motion gives {}", d.stated, d.place, d.found),
+            (None, None) => format!("`{}`", statement.entry),
+        })
+    }
+}
+
+fn is_empty(value: &Value) -> bool {
+    value.is_null() || value.as_array().is_some_and(Vec::is_empty)
+}
+
+/// Statements that a result of such a motion makes and this one does not: each must be there, or be said to be absent.
+fn missing<'a>(
+    stated: &'a serde_json::Map<String, Value>,
+    result: &'a GaitResult,
+    derived: &'a Value,
+) -> impl Iterator<Item = Statement> + 'a {
+    let excused = |key: &str| result.not_examined.iter().any(|open| open.entry == key);
+    let entries = derived.as_object().into_iter().flatten();
+    entries
+        .filter(|(key, value)| !GIVEN.contains(&key.as_str()) && !HISTORY.contains(&key.as_str()) && !is_empty(value))
+        .filter(move |(key, _)| key.as_str() != ABSENT && stated.get(*key).is_none_or(is_empty) && !excused(key))
+        .map(|(key, _)| Statement::whole(key, Verdict::NotConfirmed, "it is missing, without a word of why".into()))
 }
 
 /// The result that the variables make, or why there is none.
@@ -95,13 +143,8 @@ fn derived(result: &GaitResult, gaits: &[&dyn Gait]) -> Result<GaitResult, (Verd
         return Err((Verdict::NotChecked, reason.into()));
     }
     let motion = Motion { half_steps: result.variables.clone() };
-    let altered;
-    let mut gait = gait;
-    if result.limits_at_real_legs {
-        altered = Altered::at_real_legs(gait).map_err(|obstacle| (Verdict::NotConfirmed, obstacle))?;
-        gait = &altered;
-    }
-    GaitResult::of_motion(gait, result.criterion, result.speed, &motion)
+    under_its_limits(result, gait, |gait| GaitResult::of_motion(gait, result.criterion, result.speed, &motion))
+        .map_err(|obstacle| (Verdict::NotConfirmed, obstacle))?
         .map_err(|error| (Verdict::NotConfirmed, format!("its motion cannot be derived anew: {error}")))
 }
 
@@ -144,15 +187,13 @@ fn compare(place: &str, stated: &Value, found: &Value, differences: &mut Vec<Dif
                 compare(&format!("{place}[{i}]"), a, b, differences);
             }
         }
-        _ if agree(place, stated, found) => {}
+        _ if agree(stated, found) => {}
         _ => differences.push(Difference { place: place.into(), stated: stated.clone(), found: found.clone() }),
     }
 }
 
-fn agree(place: &str, stated: &Value, found: &Value) -> bool {
+fn agree(stated: &Value, found: &Value) -> bool {
     match (stated.as_f64(), found.as_f64()) {
-        // The optimizer's own residual, and one with multipliers that are fitted anew: both must be small enough.
-        (Some(a), Some(b)) if place == "receipt.kkt_residual" => a.max(b) <= KKT_RESIDUAL,
         (Some(a), Some(b)) => (a - b).abs() <= ABSOLUTE + RELATIVE * a.abs().max(b.abs()),
         _ => stated == found,
     }

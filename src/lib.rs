@@ -18,6 +18,7 @@ pub mod model;
 pub mod motion;
 pub mod number;
 pub mod optimality;
+pub mod origin;
 mod polynomial;
 pub mod readback;
 pub mod report;
@@ -29,6 +30,7 @@ pub mod stability;
 pub mod stance;
 pub mod states;
 pub mod trajectory;
+pub mod verdict;
 pub mod verify;
 pub mod walk;
 

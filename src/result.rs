@@ -5,22 +5,16 @@ use crate::cycle::{Label, theta};
 use crate::four_legs::RealLegs;
 use crate::model::Gait;
 use crate::motion::{Costs, Criterion, HalfStep, Motion};
-use crate::optimality::{Optimality, optimality};
+use crate::optimality::Optimality;
 use crate::search::evidence::Effort;
 use crate::search::local::Local;
 use crate::search::multi_start::Found;
 use crate::sensitivity::Sensitivities;
 use crate::sqp;
 use crate::stability::Stability;
-use crate::verify::{self, Finding, JointPeak, VerifyError, verify};
+use crate::verdict::Verdict;
+use crate::verify::{Finding, JointPeak, VerifyError};
 use serde::{Deserialize, Serialize};
-
-/// Largest violation, cycle error and KKT residual with which a result counts as an optimum.
-pub const VIOLATION: f64 = 1e-6;
-pub const CYCLE_ERROR: f64 = 1e-6;
-pub const KKT_RESIDUAL: f64 = 1e-5;
-/// Points per half step on which the constraints are checked.
-pub const GRID: usize = 2001;
 
 /// How an optimization ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -84,6 +78,9 @@ pub struct GaitResult {
     /// Whether the real legs can do what the virtual ones do; absent where the build has no model of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub real_legs: Option<RealLegs>,
+    /// What an optimum's entries leave open: those that are absent, each with its reason.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub not_examined: Vec<NotExamined>,
     /// For an infeasible problem: the constraints that conflict, worst first.
     #[serde(default)]
     pub conflicts: Vec<ConflictEntry>,
@@ -107,8 +104,9 @@ pub struct Receipt {
     pub max_violation: f64,
     /// How far the motion is from a cycle under an independent integration.
     pub cycle_error: f64,
-    /// Scaled first-order optimality residual.
-    pub kkt_residual: f64,
+    /// Scaled residual of the first-order optimality conditions, derived from the motion alone: that of [`Optimality`].
+    /// Absent where they cannot be looked at.
+    pub kkt_residual: Option<f64>,
     /// Names of the active constraints.
     pub active: Vec<String>,
     /// The same with half step, time and margin.
@@ -116,6 +114,15 @@ pub struct Receipt {
     /// The constraint that is violated most, if any is.
     pub worst: Option<Finding>,
     pub grid: usize,
+}
+
+/// An entry of a result that is absent.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NotExamined {
+    /// Its key, as in `stability`.
+    pub entry: String,
+    /// Why: not looked at, or what kept it from being derived.
+    pub reason: String,
 }
 
 /// A constraint that takes part in a conflict.
@@ -198,10 +205,8 @@ impl GaitResult {
         speed: f64,
         motion: &Motion,
     ) -> Result<GaitResult, VerifyError> {
-        let receipt = verify(gait.description(), motion, speed, GRID)?;
-        let residual = optimality(gait, criterion, speed, motion).map_or(f64::MAX, |found| found.residual());
         let mut result = GaitResult::empty(gait, criterion, speed, SearchEntry::default());
-        result.accept(motion, receipt, residual);
+        result.accept(motion, Verdict::new(gait, criterion, speed, motion)?);
         result.examine(gait);
         Ok(result)
     }
@@ -230,6 +235,7 @@ impl GaitResult {
             stability: None,
             peaks: Vec::new(),
             real_legs: None,
+            not_examined: Vec::new(),
             conflicts: Vec::new(),
             nearest_speed: None,
             local_optima: Vec::new(),
@@ -278,10 +284,10 @@ impl GaitResult {
         self.motion().map(|motion| theta(&motion))
     }
 
-    /// Makes `local` the result, with its receipt.
+    /// Makes the motion of `local` the result, with its verdict.
     fn take(&mut self, gait: &dyn Gait, local: &Local) {
-        match verify(gait.description(), &local.motion, self.speed, GRID) {
-            Ok(receipt) => self.accept(&local.motion, receipt, local.kkt.optimality()),
+        match Verdict::new(gait, self.criterion, self.speed, &local.motion) {
+            Ok(verdict) => self.accept(&local.motion, verdict),
             Err(error) => {
                 self.status = Status::ReceiptFailed;
                 self.message = format!("the optimizer's motion could not be re-derived: {error}");
@@ -289,24 +295,16 @@ impl GaitResult {
         }
     }
 
-    /// Makes `motion` the result: an optimum if its receipt holds.
-    fn accept(&mut self, motion: &Motion, receipt: verify::Receipt, kkt_residual: f64) {
-        let mut reasons = Vec::new();
-        let mut must = |what: &str, value: f64, limit: f64| {
-            if value.is_nan() || value > limit {
-                reasons.push(format!("{what} is {value:.1e}, not {limit:.0e} or less"));
-            }
-        };
-        must("the largest violation", receipt.max_violation, VIOLATION);
-        must("the cycle error", receipt.cycle_error, CYCLE_ERROR);
-        must("the KKT residual", kkt_residual, KKT_RESIDUAL);
-        self.status = if reasons.is_empty() { Status::Optimal } else { Status::ReceiptFailed };
-        self.message = if reasons.is_empty() {
-            "local optimum, receipt holds".into()
+    /// Makes `motion` the result: an optimum if its verdict says so.
+    fn accept(&mut self, motion: &Motion, verdict: Verdict) {
+        let holds = verdict.is_optimal();
+        (self.status, self.message) = if holds {
+            (Status::Optimal, "local optimum, receipt holds".into())
         } else {
-            format!("no receipt: {}", reasons.join("; "))
+            (Status::ReceiptFailed, format!("no receipt: {}", verdict.reasons.join("; ")))
         };
-        let holds = self.status == Status::Optimal;
+        let kkt_residual = verdict.kkt_residual();
+        let receipt = verdict.receipt;
         self.cost = holds.then(|| receipt.costs.of(self.criterion));
         self.costs = holds.then_some(receipt.costs);
         self.step_length = Some(receipt.step_length);
@@ -322,6 +320,9 @@ impl GaitResult {
             worst: receipt.worst,
             grid: receipt.grid,
         });
+        self.optimality = verdict.optimality;
+        self.certificate = verdict.certificate;
+        self.not_examined = if holds { self.absent("not looked at") } else { Vec::new() };
     }
 
     /// Says why there is no optimum.

@@ -4,7 +4,8 @@ use piaffe::altered::Altered;
 use piaffe::gaits::GAITS;
 use piaffe::model::Gait;
 use piaffe::motion::{Criterion, Motion};
-use piaffe::result::{GaitResult, Status, VIOLATION};
+use piaffe::result::{GaitResult, Status};
+use piaffe::verdict::VIOLATION;
 use piaffe::search::multi_start::{Settings, search};
 use piaffe::verify::{sample, verify};
 

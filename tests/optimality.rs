@@ -5,7 +5,7 @@ use piaffe::gaits::GAITS;
 use piaffe::model::Gait;
 use piaffe::motion::{Criterion, Motion};
 use piaffe::optimality::{Linearized, Optimality, optimality};
-use piaffe::result::KKT_RESIDUAL;
+use piaffe::verdict::KKT_RESIDUAL;
 use piaffe::search::local::{Local, Task};
 use piaffe::search::multi_start::{Settings, search};
 use piaffe::sqp::Control;

@@ -7,7 +7,7 @@ use piaffe::cycle::Cycle;
 use piaffe::gaits::GAITS;
 use piaffe::model::{Description, Rotation};
 use piaffe::motion::Criterion;
-use piaffe::result::GRID;
+use piaffe::verdict::GRID;
 use piaffe::search::local::Task;
 use piaffe::search::multi_start::start;
 use piaffe::sqp::Control;

@@ -4,7 +4,7 @@ use super::optimize::{progress, solve};
 use super::{first_robot, output, report};
 use piaffe::motion::Criterion;
 use piaffe::report::Extremes;
-use piaffe::result::GaitResult;
+use piaffe::result::{GaitResult, Receipt};
 use piaffe::search::local::Task;
 use piaffe::search::multi_start::Settings;
 use std::io::Write;
@@ -89,7 +89,7 @@ fn row(r: &GaitResult) -> std::io::Result<()> {
     let published = PUBLISHED.iter().find(|p| p.gait == r.gait && p.criterion == r.criterion);
     let (paper, paper_steps) = published.map_or((String::new(), ""), |p| (format!("{:.2}", p.cost), p.durations));
     match (r.cost, &r.receipt) {
-        (Some(cost), Some(receipt)) => writeln!(
+        (Some(cost), Some(receipt @ Receipt { kkt_residual: Some(kkt), .. })) => writeln!(
             out,
             "{:<8} {:<9} {cost:>10.4} {:<7} {:<13} {:>9.1e} {:>9.1e} {:>9.1e}  {paper:>10} {paper_steps:<12} {:<6}  {:<9}  {}",
             r.gait,
@@ -98,7 +98,7 @@ fn row(r: &GaitResult) -> std::io::Result<()> {
             durations.join("/"),
             receipt.max_violation,
             receipt.cycle_error,
-            receipt.kkt_residual,
+            kkt,
             receipt.active.len(),
             r.certificate.as_ref().map_or("", |c| c.standing.name()),
             r.real_legs.as_ref().map_or("", |legs| legs.verdict().name()),

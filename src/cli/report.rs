@@ -3,11 +3,13 @@
 use super::{input, output};
 use anyhow::{Context, bail};
 use piaffe::gaits::GAITS;
+use piaffe::readback::Readback;
 use piaffe::report::{Extremes, Report};
 use piaffe::result::GaitResult;
+use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
-/// Reads results from files and folders and writes their report to `out`.
+/// Reads results from files and folders and writes their report to `out`. What a result states is derived anew before it is shown.
 pub fn run(results: &[PathBuf], detail: Option<f64>, out: &Path) -> anyhow::Result<bool> {
     let mut all = Vec::new();
     let mut extremes = Extremes::default();
@@ -22,6 +24,11 @@ pub fn run(results: &[PathBuf], detail: Option<f64>, out: &Path) -> anyhow::Resu
             all.push(input::read_json::<GaitResult>(&path.to_string_lossy())?);
         }
     }
+    let read = |result: GaitResult| match result.is_optimal() {
+        true => Readback::new(result, GAITS).map(|readback| readback.result),
+        false => Ok(result),
+    };
+    let all = all.into_par_iter().map(read).collect::<Result<Vec<_>, _>>()?;
     let index = write(all, extremes, detail, out)?;
     output::say!("{}", index.display());
     Ok(true)

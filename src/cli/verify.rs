@@ -64,6 +64,7 @@ fn print(file: &str, audit: &Audit) -> std::io::Result<()> {
             Verdict::Confirmed => "confirmed",
             Verdict::NotConfirmed => "NOT CONFIRMED",
             Verdict::NotChecked => "not checked",
+            Verdict::NotDerivable => "not derivable",
         };
         match reason {
             Some(reason) => writeln!(out, "  {}\n    {word}: {reason}", names.join(", "))?,

@@ -280,6 +280,37 @@ impl<'a> Cycle<'a> {
         }
     }
 
+    /// Values of the rows between nodes in the last simulated motion (scaled), per half step.
+    pub fn dip_values(&self) -> Vec<Vec<f64>> {
+        let value = |p: &Phase, dip: &Dip| {
+            p.lowest(&self.path[dip.constraint], dip.element, dip.lowest.at).value + dip.offset
+        };
+        self.phases.iter().map(|p| p.dips.iter().map(|dip| value(p, dip)).collect()).collect()
+    }
+
+    /// Gives every row between nodes the value that its constraint has in the last simulated motion, where the row's quartic is
+    /// lowest.
+    ///
+    /// # Errors
+    /// If the equations admit no such state.
+    pub fn measure_dips(&mut self, phase: usize) -> Result<(), Undefined> {
+        if self.phases[phase].dips.is_empty() {
+            return Ok(());
+        }
+        let mut glance = Glance::new(self.description(), self.stance_leg(phase));
+        for k in 0..self.phases[phase].dips.len() {
+            let p = &self.phases[phase];
+            let dip = &p.dips[k];
+            let constraint = &self.path[dip.constraint];
+            let lowest = p.lowest(constraint, dip.element, dip.lowest.at);
+            p.glance(self.gait, (dip.element as f64 + lowest.at) / p.mesh.elements as f64, &mut glance)?;
+            let offset = constraint.value(&glance.values) - lowest.value;
+            let dip = &mut self.phases[phase].dips[k];
+            (dip.offset, dip.lowest) = (offset, lowest);
+        }
+        Ok(())
+    }
+
     /// The half step before `k`.
     fn before(&self, k: usize) -> usize {
         (k + self.phases.len() - 1) % self.phases.len()

@@ -122,7 +122,7 @@ impl<'a> Linearized<'a> {
     ) -> Result<Linearized<'a>, Undefined> {
         let theta = theta(motion);
         let mut cycle = Cycle::resolving(gait, criterion, speed, &theta).map_err(|_| Undefined)?;
-        dips(&cycle).map_err(|_| Undefined)?.impose(&mut cycle);
+        dips(&cycle).and_then(|dips| dips.impose(&mut cycle)).map_err(|_| Undefined)?;
         let scale = cycle.scale();
         let multipliers = multipliers(&mut cycle, &theta, scale)?;
         Ok(Linearized { cycle, theta, multipliers })

@@ -160,7 +160,7 @@ fn row(report: &Report, r: &GaitResult) -> Markup {
                 td.n { (r.step_length.map_or(String::new(), |l| format!("{l:.4}"))) }
                 td.n { (scientific(receipt.max_violation)) }
                 td.n { (scientific(receipt.cycle_error)) }
-                td.n { (scientific(receipt.kkt_residual)) }
+                td.n { (receipt.kkt_residual.map_or(html! { "–" }, scientific)) }
                 td { span.holds { "holds" } }
             } @else {
                 td colspan="6" { (r.message) }
@@ -271,7 +271,7 @@ fn receipt(r: &GaitResult) -> Markup {
             dl {
                 dt { "largest violation of any limit" } dd { (scientific(receipt.max_violation)) " in natural units" }
                 dt { "distance from a closed cycle" } dd { (scientific(receipt.cycle_error)) " rad, rad/s" }
-                dt { "first-order optimality (KKT)" } dd { (scientific(receipt.kkt_residual)) }
+                dt { "first-order optimality (KKT)" } dd { (receipt.kkt_residual.map_or(html! { "–" }, scientific)) }
             }
             @if let Some(c) = &r.certificate { (certificate::section(c)) }
             @if let Some(legs) = &r.real_legs { (real_legs::section(legs)) }

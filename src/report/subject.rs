@@ -22,12 +22,12 @@ pub struct Subject<'a> {
 }
 
 impl<'a> Subject<'a> {
-    /// Follows the motion of a result.
+    /// Follows the motion of a result that was derived here, or read back ([`Readback::new`]).
     ///
     /// # Errors
     /// If the result cannot be used, or its motion cannot be followed.
     pub fn new(result: GaitResult, gaits: &[&'a dyn Gait]) -> Result<Subject<'a>, ReportError> {
-        let Readback { result, gait, motion, cost } = Readback::new(result, gaits)?;
+        let Readback { result, gait, motion, cost } = Readback::issued(result, gaits)?;
         let walk = Walk::even(gait, &motion, INTERVALS)?;
         Ok(Subject { result, gait, motion, walk, cost })
     }

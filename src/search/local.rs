@@ -6,9 +6,12 @@ use crate::cycle::{Cycle, Label, elements};
 use crate::model::Gait;
 use crate::motion::{Costs, Criterion, Motion};
 use crate::sqp::{self, Control, KktResidual, Options, Solution, Status};
+use crate::stance::Undefined;
 
 /// Violation between nodes (scaled) at which refinement stops.
 const DENSE: f64 = 1e-7;
+/// Change of an active row between nodes (scaled) at which it does.
+const SETTLED: f64 = 1e-9;
 const ROUNDS: usize = 20;
 
 /// What is asked for: the cheapest motion of a gait at a mean speed (m/s).
@@ -140,16 +143,30 @@ impl Task<'_> {
 }
 
 /// The optimum near `start`, with constraints imposed between nodes where they dip; and what violation (scaled) is left there.
+///
+/// The rows between nodes are known only at a solution, so it is sought again until they no longer change.
 fn settle(cycle: &mut Cycle, start: &[f64], first_step_limit: f64, observe: Observer) -> (Solution, f64) {
     let options = options(cycle);
     let first = Options { first_step_limit, ..options.clone() };
     let mut solution = sqp::minimize(cycle, start, &first, observe);
+    let mut settled: Option<(Solution, f64)> = None;
     for round in 0.. {
-        let Ok(found) = cycle.simulate(&solution.x).and_then(|()| dips(cycle)) else { break };
-        if !solution.status.is_optimal() || found.violation <= DENSE || round == ROUNDS {
-            return (solution, found.violation);
+        let look = |cycle: &mut Cycle| {
+            cycle.simulate(&solution.x)?;
+            let found = dips(cycle)?;
+            Ok::<_, Undefined>((found.violation, found.impose(cycle)?))
+        };
+        let Ok((violation, change)) = look(cycle) else { break };
+        if !solution.status.is_optimal() {
+            // What was found with nearly these rows is better than nothing: its verdict tells.
+            return settled.unwrap_or((solution, violation));
         }
-        found.impose(cycle);
+        if (violation <= DENSE && change <= SETTLED) || round == ROUNDS {
+            return (solution, violation);
+        }
+        if violation <= DENSE {
+            settled = Some((solution.clone(), violation));
+        }
         let iterations = solution.iterations;
         solution = sqp::minimize(cycle, &solution.x, &options, observe);
         solution.iterations += iterations;

@@ -17,6 +17,9 @@ const GRID: usize = 240;
 /// Constraints above this (scaled) are left alone.
 const NEAR: f64 = 2e-3;
 
+/// Rows above this (scaled) do not hold a solution.
+const ACTIVE: f64 = 1e-6;
+
 /// A constraint is taken to stay so near to the quartic through its values at the nodes of an element, in parts of their range.
 const DOUBT: f64 = 0.1;
 /// Places where the quartic is looked at.
@@ -40,11 +43,24 @@ struct Dip {
 }
 
 impl Dips {
-    /// Imposes the constraints where they dip in the same motion.
-    pub fn impose(&self, cycle: &mut Cycle) {
+    /// Imposes the constraints where they dip in the same motion, the last one that `cycle` has simulated. Tells by how much that
+    /// changes a row that is active before or after (scaled).
+    ///
+    /// # Errors
+    /// If the equations admit no state at some instant.
+    pub fn impose(&self, cycle: &mut Cycle) -> Result<f64, Undefined> {
+        // Rows whose dip has moved on or risen must not keep the offset that they had.
+        let before = cycle.dip_values();
+        for phase in 0..cycle.phases() {
+            cycle.measure_dips(phase)?;
+        }
         for dip in &self.found {
             cycle.impose(dip.phase, dip.constraint, dip.s, dip.value);
         }
+        let after = cycle.dip_values();
+        let changes = before.iter().zip(&after).flat_map(|(before, after)| before.iter().zip(after));
+        let active = changes.filter(|(before, after)| before.min(**after) < ACTIVE);
+        Ok(active.map(|(before, after)| (before - after).abs()).fold(0.0, f64::max))
     }
 }
 

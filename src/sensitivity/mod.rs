@@ -10,7 +10,7 @@ use crate::constraints::sharing::applies;
 use crate::model::Gait;
 use crate::motion::{Criterion, Motion};
 use crate::optimality::Linearized;
-use crate::result::KKT_RESIDUAL;
+use crate::verdict::KKT_RESIDUAL;
 use lagrangian::{LANES, Slopes};
 use serde::{Deserialize, Serialize};
 

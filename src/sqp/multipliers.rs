@@ -4,6 +4,8 @@
 //! variables, with s = max(1, ‖∇f‖∞). It is zero exactly where the optimality conditions hold. Otherwise s·d is minus what is
 //! left of ∇f by the multipliers that the program finds: those with the least residual in the sense of least squares, where
 //! those of inequalities are not negative and pay for every distance from the constraint (the program's dual is that fit).
+//! What is violated counts as met: violations have a residual of their own, and where active constraints nearly depend on each
+//! other, the least of them would ask for a long step.
 
 use super::dense::{axpy, max_abs};
 use super::kkt;
@@ -58,11 +60,11 @@ pub fn multipliers<P: Problem>(problem: &mut P, x: &[f64], scale: Vec<f64>) -> R
     let mut row = vec![0.0; n];
     for i in 0..equalities {
         view.equality_row(i, &mut row)?;
-        qp.push(&row, point.values.equalities[i], true, LIMIT * size);
+        qp.push(&row, 0.0, true, LIMIT * size);
     }
     for &i in &near {
         view.inequality_row(i, &mut row)?;
-        qp.push(&row, point.values.inequalities[i], false, LIMIT * size);
+        qp.push(&row, point.values.inequalities[i].max(0.0), false, LIMIT * size);
     }
     let mut solver = ActiveSet::new(n, qp.len());
     let step = match solver.solve(&qp) {
