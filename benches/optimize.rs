@@ -4,10 +4,10 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use piaffe::gaits::GAITS;
 use piaffe::motion;
-use piaffe::verdict::GRID;
 use piaffe::search::local::{Local, Task};
 use piaffe::search::multi_start::start;
 use piaffe::sqp::Control;
+use piaffe::verdict::GRID;
 use piaffe::verify::{Receipt, VerifyError, verify};
 use std::hint::black_box;
 

@@ -22,6 +22,8 @@ const HISTORY: [&str; 7] =
     ["local_optima", "virtual_cost", "conflicts", "nearest_speed", "search", "seconds", "version"];
 /// What is absent, which is compared with what is.
 const ABSENT: &str = "not_examined";
+/// What an optimum may leave open, if it says so: what is told beyond the verdict.
+const MAY_BE_ABSENT: [&str; 3] = ["sensitivities", "stability", "real_legs"];
 
 /// What became of a statement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -71,20 +73,25 @@ impl Audit {
 
     /// The same, where `stated` is the file that `result` was read from: it may have entries that no result has.
     pub fn new(stated: &Value, result: &GaitResult, gaits: &[&dyn Gait]) -> Audit {
+        Audit::against(stated, result, derived(result, gaits).as_ref())
+    }
+
+    /// The same, where it is known already what the motion makes ([`derived`]).
+    pub fn against(stated: &Value, result: &GaitResult, found: Result<&GaitResult, &(Verdict, String)>) -> Audit {
         let none = serde_json::Map::new();
         let entries = stated.as_object().unwrap_or(&none);
         let (history, claims): (Vec<_>, Vec<_>) = entries
             .iter()
             .filter(|(key, value)| !GIVEN.contains(&key.as_str()) && key.as_str() != ABSENT && !is_empty(value))
             .partition(|(key, _)| HISTORY.contains(&key.as_str()));
-        let mut statements: Vec<Statement> = match derived(result, gaits) {
+        let mut statements: Vec<Statement> = match found {
             Ok(found) => {
-                let derived = serde_json::to_value(&found).unwrap_or_default();
-                let compared = claims.iter().map(|(key, value)| Statement::compared(key, value, &found, &derived));
+                let derived = serde_json::to_value(found).unwrap_or_default();
+                let compared = claims.iter().map(|(key, value)| Statement::compared(key, value, found, &derived));
                 compared.chain(missing(entries, result, &derived)).collect()
             }
             Err((verdict, reason)) => {
-                claims.iter().map(|(key, _)| Statement::whole(key, verdict, reason.clone())).collect()
+                claims.iter().map(|(key, _)| Statement::whole(key, *verdict, reason.clone())).collect()
             }
         };
         let of_search = "how it was found, which a motion does not show";
@@ -127,7 +134,7 @@ fn missing<'a>(
     result: &'a GaitResult,
     derived: &'a Value,
 ) -> impl Iterator<Item = Statement> + 'a {
-    let excused = |key: &str| result.not_examined.iter().any(|open| open.entry == key);
+    let excused = |key: &str| MAY_BE_ABSENT.contains(&key) && result.not_examined.iter().any(|open| open.entry == key);
     let entries = derived.as_object().into_iter().flatten();
     entries
         .filter(|(key, value)| !GIVEN.contains(&key.as_str()) && !HISTORY.contains(&key.as_str()) && !is_empty(value))
@@ -135,8 +142,11 @@ fn missing<'a>(
         .map(|(key, _)| Statement::whole(key, Verdict::NotConfirmed, "it is missing, without a word of why".into()))
 }
 
-/// The result that the variables make, or why there is none.
-fn derived(result: &GaitResult, gaits: &[&dyn Gait]) -> Result<GaitResult, (Verdict, String)> {
+/// The result that the variables of another one make, or why there is none.
+///
+/// # Errors
+/// With the verdict on all that is stated, and the reason.
+pub fn derived(result: &GaitResult, gaits: &[&dyn Gait]) -> Result<GaitResult, (Verdict, String)> {
     let gait = gait_of(result, gaits).map_err(|unusable| (Verdict::NotChecked, unusable.to_string()))?;
     if result.variables.is_empty() {
         let reason = "there is no motion: that none was found is a statement about the search";

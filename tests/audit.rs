@@ -1,5 +1,8 @@
 //! `piaffe verify`: what a result states is derived anew, and what was changed is named.
 
+use piaffe::audit::{Audit, Verdict, derived};
+use piaffe::gaits::GAITS;
+use piaffe::result::GaitResult;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 use std::process::{Command, Output};
@@ -47,12 +50,15 @@ fn what_the_program_states_is_confirmed() {
     for (gait, criterion) in all.into_iter().filter_map(|name| name.split_once(' ')) {
         let result = optimum(gait, criterion);
         let (code, statements, words) = audited("honest.json", &result);
-        assert!(code == 0 && entries(&statements, "confirmed").len() == statements.len(), "{words}");
-        let confirmed = entries(&statements, "confirmed");
+        let (confirmed, history) = (entries(&statements, "confirmed"), entries(&statements, "not-derivable"));
+        assert!(code == 0 && confirmed.len() + history.len() == statements.len(), "{words}");
+        // How it was found is named, and nothing else is left open.
+        assert_eq!(history, ["local_optima", "search", "seconds", "version"], "{words}");
         for entry in ["status", "cost", "receipt", "certificate", "peaks", "durations", "optimality", "stability"] {
             assert!(confirmed.iter().any(|c| c == entry), "{entry} is not stated: {confirmed:?}");
         }
-        assert!(words.lines().next().unwrap().ends_with(", confirmed") && !words.contains("not "), "{words}");
+        let open = ["NOT CONFIRMED", "not checked"].iter().any(|word| words.contains(word));
+        assert!(words.lines().next().unwrap().ends_with(", confirmed") && !open, "{words}");
     }
 }
 
@@ -73,6 +79,9 @@ fn what_was_changed_is_named() {
         ("/step_length", json!(0.5)),
         ("/receipt/max_violation", json!(0.0)),
         ("/receipt/kkt_residual", json!(1e-3)),
+        ("/receipt/kkt_residual", json!(1e-5)),
+        ("/receipt/kkt_residual", json!(-1000.0)),
+        ("/receipt/kkt_residual", Value::Null),
         ("/receipt/findings/0/constraint", json!("friction")),
         ("/receipt/findings", json!([])),
         ("/certificate/standing", json!("sampled")),
@@ -91,6 +100,26 @@ fn what_was_changed_is_named() {
         assert!(place.starts_with(entry) && words.contains(place), "{words}");
         assert_ne!(difference["stated"], difference["found"]);
     }
+    // A statement that is left out, whatever is said of why.
+    for (entry, excuse) in [
+        ("cost", json!([])),
+        ("receipt", json!([{ "entry": "receipt", "reason": "not looked at" }])),
+        ("certificate", json!([{ "entry": "certificate", "reason": "not looked at" }])),
+        ("optimality", json!([])),
+        ("peaks", json!([])),
+        ("stability", json!([])),
+    ] {
+        let mut result = TROT.clone();
+        result.as_object_mut().unwrap().remove(entry);
+        result["not_examined"] = excuse;
+        let (code, statements, words) = audited(&format!("without-{entry}.json"), &result);
+        assert!(code == 4 && entries(&statements, "not-confirmed") == [entry], "{entry}: {words}");
+    }
+    // What takes longer than the verdict may be left open, if it is said.
+    let mut result = TROT.clone();
+    result.as_object_mut().unwrap().remove("stability");
+    result["not_examined"] = json!([{ "entry": "stability", "reason": "not looked at" }]);
+    assert_eq!(audited("open.json", &result).0, 0);
     // The motion: whatever follows from it is refuted.
     for (pointer, by) in [("/variables/0/q_final/0", 1e-6), ("/variables/0/duration", 1e-7), ("/speed", 1e-4)] {
         let (statements, words) = changed(pointer, json!(number(pointer) + by));
@@ -118,7 +147,10 @@ fn what_cannot_be_checked_is_said_to_be_so() {
         *result.pointer_mut(pointer).unwrap() = value;
         let (code, statements, words) = audited("foreign.json", &result);
         assert!(code == 4 && words.contains(why), "{words}");
-        assert_eq!(entries(&statements, "not-checked").len(), statements.len());
+        assert_eq!(
+            entries(&statements, "not-checked").len() + entries(&statements, "not-derivable").len(),
+            statements.len()
+        );
     }
     // A statement that this version knows nothing of, beside others that hold.
     let mut result = TROT.clone();
@@ -133,7 +165,69 @@ fn what_cannot_be_checked_is_said_to_be_so() {
     let infeasible: Value = serde_json::from_slice(&std::fs::read(file).unwrap()).unwrap();
     let (code, statements, words) = audited("infeasible.json", &infeasible);
     assert!(code == 4 && words.contains("no motion"), "{words}");
-    assert_eq!(entries(&statements, "not-checked").len(), statements.len());
+    assert_eq!(
+        entries(&statements, "not-checked").len() + entries(&statements, "not-derivable").len(),
+        statements.len()
+    );
+}
+
+/// Pointers to all numbers in a value.
+fn numbers(value: &Value, at: &str, found: &mut Vec<String>) {
+    match value {
+        Value::Number(_) => found.push(at.to_string()),
+        Value::Array(list) => list.iter().enumerate().for_each(|(i, v)| numbers(v, &format!("{at}/{i}"), found)),
+        Value::Object(map) => map.iter().for_each(|(key, v)| numbers(v, &format!("{at}/{key}"), found)),
+        _ => {}
+    }
+}
+
+#[test]
+fn every_edit_of_a_single_number_is_caught_or_named_as_not_derivable() {
+    let honest: GaitResult = serde_json::from_value(TROT.clone()).unwrap();
+    let found = derived(&honest, GAITS).unwrap();
+    let mut pointers = Vec::new();
+    numbers(&TROT, "", &mut pointers);
+    assert!(pointers.len() > 250, "{}", pointers.len());
+    for pointer in pointers {
+        let mut result = TROT.clone();
+        let slot = result.pointer_mut(&pointer).unwrap();
+        *slot = match (slot.as_u64(), slot.as_f64().unwrap()) {
+            (Some(count), _) => json!(count + 1),
+            (None, x) => json!(if x == 0.0 { 1e-6 } else { x * (1.0 + 1e-7) + 1e-12 }),
+        };
+        // What cannot be read is refused as such.
+        let Ok(read) = serde_json::from_value::<GaitResult>(result.clone()) else { continue };
+        let entry = pointer.split('/').nth(1).unwrap();
+        let given = ["speed", "variables"].contains(&entry);
+        let audit = match given {
+            true => Audit::new(&result, &read, GAITS),
+            false => Audit::against(&result, &read, Ok(&found)),
+        };
+        let named = audit.statements.iter().any(|s| s.entry == entry && s.verdict == Verdict::NotDerivable);
+        assert!(named || !audit.is_confirmed(), "{pointer}: {} is confirmed", result.pointer(&pointer).unwrap());
+    }
+}
+
+#[test]
+fn nothing_is_shown_that_is_not_confirmed() {
+    for (pointer, by) in [("/speed", 0.6), ("/cost", -1.0), ("/certificate/bounds/0/margin", 0.1)] {
+        let mut result = TROT.clone();
+        let slot = result.pointer_mut(pointer).unwrap();
+        *slot = json!(slot.as_f64().unwrap() + by);
+        let file = path("tampered.json");
+        std::fs::write(&file, result.to_string()).unwrap();
+        let (file, out) = (file.to_str().unwrap(), path("page"));
+        for command in [
+            &["report", file, "--out", out.to_str().unwrap()][..],
+            &["export", file, "--format", "csv", "--out", "-"],
+            &["lift", file, "--format", "csv", "--out", "-"],
+        ] {
+            let ran = piaffe(command);
+            let words = String::from_utf8_lossy(&ran.stderr);
+            assert!(!ran.status.success() && words.contains("is not confirmed"), "{command:?}: {words}");
+            assert!(ran.stdout.is_empty() && !out.exists(), "{command:?} writes all the same");
+        }
+    }
 }
 
 #[test]

@@ -5,8 +5,8 @@ use piaffe::gaits::GAITS;
 use piaffe::model::Gait;
 use piaffe::motion::{Criterion, Motion};
 use piaffe::result::{GaitResult, Status};
-use piaffe::verdict::VIOLATION;
 use piaffe::search::multi_start::{Settings, search};
+use piaffe::verdict::VIOLATION;
 use piaffe::verify::{sample, verify};
 
 fn optimize(gait: &dyn Gait, criterion: Criterion, speed: f64, starts: usize) -> GaitResult {

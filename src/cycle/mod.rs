@@ -282,9 +282,8 @@ impl<'a> Cycle<'a> {
 
     /// Values of the rows between nodes in the last simulated motion (scaled), per half step.
     pub fn dip_values(&self) -> Vec<Vec<f64>> {
-        let value = |p: &Phase, dip: &Dip| {
-            p.lowest(&self.path[dip.constraint], dip.element, dip.lowest.at).value + dip.offset
-        };
+        let value =
+            |p: &Phase, dip: &Dip| p.lowest(&self.path[dip.constraint], dip.element, dip.lowest.at).value + dip.offset;
         self.phases.iter().map(|p| p.dips.iter().map(|dip| value(p, dip)).collect()).collect()
     }
 
