@@ -159,6 +159,14 @@ pub fn derived(result: &GaitResult, gaits: &[&dyn Gait]) -> Result<GaitResult, (
 }
 
 impl Statement {
+    /// An entry beside what it should be.
+    pub fn of(entry: &str, stated: &Value, found: &Value) -> Statement {
+        let mut differences = Vec::new();
+        compare(entry, stated, found, &mut differences);
+        let verdict = if differences.is_empty() { Verdict::Confirmed } else { Verdict::NotConfirmed };
+        Statement { entry: entry.into(), verdict, reason: None, differences }
+    }
+
     fn whole(entry: &str, verdict: Verdict, reason: String) -> Statement {
         Statement { entry: entry.into(), verdict, reason: Some(reason), differences: Vec::new() }
     }
@@ -173,10 +181,7 @@ impl Statement {
                 Statement::whole(entry, Verdict::NotConfirmed, reason)
             };
         };
-        let mut differences = Vec::new();
-        compare(entry, stated, found, &mut differences);
-        let verdict = if differences.is_empty() { Verdict::Confirmed } else { Verdict::NotConfirmed };
-        Statement { entry: entry.into(), verdict, reason: None, differences }
+        Statement::of(entry, stated, found)
     }
 }
 

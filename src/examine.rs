@@ -1,5 +1,6 @@
 //! What is told about an optimum beyond its verdict: what takes longer than finding it.
 
+use crate::finite::is_finite;
 use crate::four_legs::RealLegs;
 use crate::model::Gait;
 use crate::result::{GaitResult, NotExamined};
@@ -9,13 +10,13 @@ use crate::stability::stability;
 impl GaitResult {
     /// Examines the motion and adds what is found; one that is no optimum is left as it is.
     ///
-    /// Each entry follows from the description and the motion alone. What cannot be derived stays absent, and
-    /// [`GaitResult::not_examined`] says so.
+    /// Each entry follows from the description and the motion alone. What cannot be derived, or has a number
+    /// that is none, stays absent, and [`GaitResult::not_examined`] says so.
     pub fn examine(&mut self, gait: &dyn Gait) {
         let Some(motion) = self.motion() else { return };
-        self.stability = stability(gait, &motion).ok();
-        self.real_legs = RealLegs::new(gait, &motion).ok();
-        self.sensitivities = sensitivities(gait, self.criterion, self.speed, &motion);
+        self.stability = stability(gait, &motion).ok().filter(is_finite);
+        self.real_legs = RealLegs::new(gait, &motion).ok().filter(is_finite);
+        self.sensitivities = sensitivities(gait, self.criterion, self.speed, &motion).filter(is_finite);
         self.not_examined = self.absent("cannot be derived for this motion with these limits");
     }
 

@@ -16,6 +16,25 @@ use crate::verdict::Verdict;
 use crate::verify::{Finding, JointPeak, VerifyError};
 use serde::{Deserialize, Serialize};
 
+/// The name of a file for the result of a gait (by its key): no two tasks share one, and those of a sweep stand in the order of
+/// their speeds.
+pub fn file_name(gait: &str, criterion: Criterion, speed: f64, real_legs: bool) -> String {
+    let padded = format!("{speed:.4}");
+    let speed = if padded.parse() == Ok(speed) { padded } else { digits(speed) };
+    named(gait, criterion, &speed, real_legs) + ".json"
+}
+
+fn named(gait: &str, criterion: Criterion, speed: &str, real_legs: bool) -> String {
+    let legs = if real_legs { "-real-legs" } else { "" };
+    format!("{}-{}-{speed}{legs}", gait.replace('/', "-"), criterion.name())
+}
+
+/// All digits of a speed. Far from 1 m/s that would be hundreds of zeros.
+fn digits(speed: f64) -> String {
+    let plain = speed.to_string();
+    if plain.len() > 24 { format!("{speed:e}") } else { plain }
+}
+
 /// How an optimization ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -269,9 +288,14 @@ impl GaitResult {
         true
     }
 
-    /// What tells it from others of its robot: gait, criterion and speed.
+    /// What tells it from others: gait, criterion, speed to its last digit, and whether the real legs are limited.
     pub fn name(&self) -> String {
-        format!("{}-{}-{}", self.gait.replace('/', "-"), self.criterion.name(), self.speed)
+        named(&self.gait, self.criterion, &digits(self.speed), self.limits_at_real_legs)
+    }
+
+    /// The name of a file for it.
+    pub fn file_name(&self) -> String {
+        file_name(&self.gait, self.criterion, self.speed, self.limits_at_real_legs)
     }
 
     /// The motion, if there is one.
@@ -349,5 +373,31 @@ impl GaitResult {
 
     pub fn is_optimal(&self) -> bool {
         self.status == Status::Optimal
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{digits, file_name};
+    use crate::motion::Criterion;
+
+    #[test]
+    fn files_of_different_tasks_have_different_names_of_bounded_length() {
+        let mut speeds = vec![5e-324, 1e-300, 1e-12, 0.1 + 0.2, 0.6, 1.4265625, 1e5, 1e21, f64::MAX];
+        speeds.extend(speeds.clone().into_iter().map(f64::next_down));
+        speeds.extend([0.3, 0.60001, 0.60002, 0.600_01_f64.next_up(), 1.0]);
+        let mut names = std::collections::BTreeSet::new();
+        for speed in &speeds {
+            for criterion in Criterion::ALL {
+                for real_legs in [false, true] {
+                    let name = file_name("a1/bound", criterion, *speed, real_legs);
+                    assert!(name.len() < 80 && !name.contains('/'), "{name}");
+                    names.insert(name);
+                }
+            }
+            assert_eq!(digits(*speed).parse(), Ok(*speed));
+        }
+        assert_eq!(names.len(), 4 * speeds.len());
+        assert_eq!(file_name("trot", Criterion::Torque, 0.6, false), "trot-torque-0.6000.json");
     }
 }

@@ -30,23 +30,20 @@ pub struct State {
     pub gamma: Option<Vec<f64>>,
 }
 
-/// A state that does not fit the gait.
+/// A state that cannot be evaluated.
 #[derive(Debug, thiserror::Error)]
-#[error("state {index}: `{key}` has {found} numbers, the {gait} needs {expected} ({meaning})")]
-pub struct Misfit {
-    index: usize,
-    key: &'static str,
-    found: usize,
-    expected: usize,
-    gait: &'static str,
-    meaning: String,
+pub enum Unfit {
+    #[error("state {index}: `{key}` has {found} numbers, the {gait} needs {expected} ({meaning})")]
+    Count { index: usize, key: &'static str, found: usize, expected: usize, gait: &'static str, meaning: String },
+    #[error("state {index}: `{key}` is beyond all numbers; take smaller ones")]
+    Overflow { index: usize, key: String },
 }
 
 /// Evaluates all states.
 ///
 /// # Errors
-/// If a state has the wrong number of coordinates for the gait.
-pub fn evaluate(gait: &dyn Gait, states: &States) -> Result<Value, Misfit> {
+/// If a state has the wrong number of coordinates for the gait, or its numbers lead to infinite ones.
+pub fn evaluate(gait: &dyn Gait, states: &States) -> Result<Value, Unfit> {
     let results =
         states.states.iter().enumerate().map(|(i, s)| evaluate_state(gait, i, s)).collect::<Result<Vec<_>, _>>()?;
     Ok(json!({ "gait": gait.description().gait, "states": results }))
@@ -62,14 +59,18 @@ fn names(d: &Description) -> Vec<String> {
     names
 }
 
-fn evaluate_state(gait: &dyn Gait, index: usize, state: &State) -> Result<Value, Misfit> {
+fn evaluate_state(gait: &dyn Gait, index: usize, state: &State) -> Result<Value, Unfit> {
     let d = gait.description();
     let (np, nq) = (d.positions(), d.orientations());
     let n = np + nq;
     let torques: Vec<String> = d.independent_torques().map(|j| format!("Γ{}", j + 1)).collect();
     let check = |key, values: &[f64], expected: usize, meaning: String| {
         let found = values.len();
-        if found == expected { Ok(()) } else { Err(Misfit { index, key, found, expected, gait: d.gait, meaning }) }
+        if found == expected {
+            Ok(())
+        } else {
+            Err(Unfit::Count { index, key, found, expected, gait: d.gait, meaning })
+        }
     };
     check("X", &state.x, n, names(d).join(", "))?;
     check("Xdot", &state.xd, n, names(d).join(", "))?;
@@ -133,7 +134,20 @@ fn evaluate_state(gait: &dyn Gait, index: usize, state: &State) -> Result<Value,
             },
         ),
     );
-    Ok(Value::Object(out))
+    match out.iter().find(|(_, value)| has_gap(value)) {
+        Some((key, _)) => Err(Unfit::Overflow { index, key: key.clone() }),
+        None => Ok(Value::Object(out)),
+    }
+}
+
+/// Whether a number is missing: that is what becomes of an infinite one.
+fn has_gap(value: &Value) -> bool {
+    match value {
+        Value::Null => true,
+        Value::Array(items) => items.iter().any(has_gap),
+        Value::Object(map) => map.values().any(has_gap),
+        _ => false,
+    }
 }
 
 fn single_support(gait: &dyn Gait, leg: usize, state: &State, a: &[f64], foot: &[f64]) -> Value {

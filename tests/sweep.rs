@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
@@ -85,6 +85,65 @@ fn a_sweep_has_its_points_greatest_speeds_and_local_optima() {
         assert_eq!(point["status"], "optimal");
         assert_eq!(point["cost"], point["local_optima"][0]);
         assert!(folder.path().join(point["file"].as_str().unwrap()).exists());
+    }
+}
+
+#[test]
+fn what_a_sweep_says_follows_from_its_results() {
+    let folder = tempfile::tempdir().unwrap();
+    run(folder.path(), &SMALL);
+    let told = |command: &str, paths: &[PathBuf]| {
+        let to: &[&str] = if command == "report" { &["--out", "report"] } else { &[] };
+        let mut piaffe = Command::new(env!("CARGO_BIN_EXE_piaffe"));
+        let out = piaffe.arg(command).args(paths).args(to).current_dir(folder.path()).output().unwrap();
+        (out.status.code().unwrap(), text(&out.stdout) + &text(&out.stderr))
+    };
+    let overview = folder.path().join("sweep.json");
+    let (code, words) = told("verify", &[folder.path().into()]);
+    assert!(code == 0 && words.contains("sweep.json: a sweep's overview, confirmed"), "{words}");
+    assert_eq!(words.matches(", confirmed").count(), 4, "{words}");
+
+    let honest: Value = serde_json::from_slice(&std::fs::read(&overview).unwrap()).unwrap();
+    let edits: [(&str, Value); 6] = [
+        ("/maximum_speeds/0/speed", 99.0.into()),
+        ("/points/0/cost", 1.0.into()),
+        ("/points/1/status", "infeasible".into()),
+        ("/points/1/speed", 0.7.into()),
+        ("/points/2/durations/0", 0.5.into()),
+        ("/points/0/local_optima/0", 1.0.into()),
+    ];
+    for (place, lie) in edits {
+        let mut edited = honest.clone();
+        *edited.pointer_mut(place).unwrap() = lie.clone();
+        std::fs::write(&overview, edited.to_string()).unwrap();
+        let (code, words) = told("verify", std::slice::from_ref(&overview));
+        assert!(code == 4 && words.contains(&format!("stated {lie}, found ")), "{place}: {words}");
+        for path in [&overview, folder.path()] {
+            let (code, words) = told("report", &[path.into()]);
+            assert!(code == 1 && words.contains(&format!("sweep.json states {lie} for ")), "{place}: {words}");
+        }
+    }
+    for file in ["../trot-torque-0.6000.json", "/etc/hostname", "..", "trot-torque-0.7000.json"] {
+        let mut edited = honest.clone();
+        edited["points"][1]["file"] = file.into();
+        std::fs::write(&overview, edited.to_string()).unwrap();
+        let (code, words) = told("verify", std::slice::from_ref(&overview));
+        assert!(code == 1 && words.contains("sweep.json names "), "{file}: {words}");
+    }
+
+    std::fs::write(&overview, honest.to_string()).unwrap();
+    assert_eq!(told("report", &[folder.path().into()]).0, 0);
+}
+
+#[test]
+fn speeds_that_differ_little_have_files_of_their_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let speeds = ["--gait", "trot", "--criterion", "torque", "--speeds", "0.60001,0.60002", "--starts", "1"];
+    run(folder.path(), &speeds);
+    for speed in [0.60001, 0.60002] {
+        let file = folder.path().join(format!("trot-torque-{speed}.json"));
+        let result: Value = serde_json::from_slice(&std::fs::read(file).unwrap()).unwrap();
+        assert_eq!(result["speed"], speed);
     }
 }
 

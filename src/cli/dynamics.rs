@@ -3,8 +3,9 @@
 use super::{input, output};
 use piaffe::model::Gait;
 use piaffe::states::{States, evaluate};
+use std::path::Path;
 
-pub fn run(gait: &dyn Gait, file: &str) -> anyhow::Result<bool> {
+pub fn run(gait: &dyn Gait, file: &Path) -> anyhow::Result<bool> {
     let states: States = input::read_json(file)?;
     output::json_to("-", &evaluate(gait, &states)?)?;
     Ok(true)

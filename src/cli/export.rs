@@ -1,13 +1,13 @@
 //! `piaffe export`: a result for other software.
 
-use super::{input, output};
-use anyhow::Context;
+use super::document::read_result;
+use super::output;
 use clap::ValueEnum;
 use piaffe::export::{controller, mjcf, npz, table, urdf};
 use piaffe::gaits::GAITS;
 use piaffe::readback::Readback;
 use piaffe::walk::Walk;
-use std::io::{IsTerminal, Write};
+use std::io::IsTerminal;
 use std::path::Path;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -25,23 +25,18 @@ pub enum Format {
 }
 
 /// Writes the result in `file` (`-`: standard input) to `out` (`-`: standard output); tables at `rate` per second.
-pub fn run(file: &str, format: Format, rate: f64, out: &str) -> anyhow::Result<bool> {
-    let Readback { gait, motion, .. } = Readback::new(input::read_json(file)?, GAITS)?;
+pub fn run(file: &Path, format: Format, rate: f64, out: &str) -> anyhow::Result<bool> {
+    let Readback { gait, motion, .. } = Readback::new(read_result(file)?, GAITS)?;
     let contents = match format {
         Format::Csv => table::csv(&Walk::at_rate(gait, &motion, rate)?).into_bytes(),
         Format::Npz => npz::npz(&Walk::at_rate(gait, &motion, rate)?)?,
-        Format::Json => serde_json::to_vec_pretty(&controller::controller(gait, &motion))?,
+        Format::Json => output::json(&controller::controller(gait, &motion))?,
         Format::Mjcf => mjcf::mjcf(&Walk::even(gait, &motion, 1)?).into_bytes(),
         Format::Urdf => urdf::urdf(gait.description()).into_bytes(),
     };
-    if out != "-" {
-        output::write_file(Path::new(out), &contents)?;
-        return Ok(true);
-    }
-    let mut stdout = std::io::stdout().lock();
-    if format == Format::Npz && stdout.is_terminal() {
+    if out == "-" && format == Format::Npz && std::io::stdout().is_terminal() {
         anyhow::bail!("npz is not for terminals: write --out FILE.npz");
     }
-    output::quiet_when_closed(stdout.write_all(&contents).and_then(|()| stdout.flush())).context("cannot write")?;
+    output::bytes_to(out, &contents)?;
     Ok(true)
 }

@@ -1,34 +1,77 @@
 //! Text and JSON from a file or standard input, with errors that say where.
 
+use super::harmless::line;
 use anyhow::{Context, bail};
 use serde::de::DeserializeOwned;
+use serde_json::Value;
 use std::io::Read;
+use std::path::Path;
+
+/// No input of ours is larger, in bytes; without an end, a device would fill the memory.
+const LARGEST: u64 = 1 << 28;
+
+/// What to call `file` in words.
+pub fn name(file: &Path) -> String {
+    if is_standard(file) { "standard input".into() } else { line(&file.to_string_lossy()).into_owned() }
+}
+
+/// Whether `file` stands for standard input.
+pub fn is_standard(file: &Path) -> bool {
+    file.as_os_str() == "-"
+}
 
 /// The text of `file`, or of standard input for `-`.
-pub fn read_text(file: &str) -> anyhow::Result<String> {
-    if file != "-" {
-        return std::fs::read_to_string(file).with_context(|| format!("cannot read {file}"));
-    }
+pub fn read_text(file: &Path) -> anyhow::Result<String> {
+    let cannot = || format!("cannot read {}", name(file));
     let mut text = String::new();
-    std::io::stdin().read_to_string(&mut text).context("cannot read standard input as UTF-8 text")?;
+    let read = if is_standard(file) {
+        std::io::stdin().lock().take(LARGEST + 1).read_to_string(&mut text)
+    } else {
+        std::fs::File::open(file).and_then(|f| f.take(LARGEST + 1).read_to_string(&mut text))
+    };
+    let length = read.with_context(cannot)?;
+    if length as u64 > LARGEST {
+        bail!("{}: it has more than {} MB", cannot(), LARGEST >> 20);
+    }
     Ok(text)
 }
 
 /// Reads and parses `file`, or standard input for `-`.
-pub fn read_json<T: DeserializeOwned>(file: &str) -> anyhow::Result<T> {
+pub fn read_json<T: DeserializeOwned>(file: &Path) -> anyhow::Result<T> {
     parse_json(file, &read_text(file)?)
 }
 
-/// Parses what was read from `file`, or from standard input for `-`.
-pub fn parse_json<T: DeserializeOwned>(file: &str, text: &str) -> anyhow::Result<T> {
-    let name = if file == "-" { "standard input" } else { file };
+/// Parses what was read from `file`, or from standard input for `-`. Texts in it are made harmless.
+pub fn parse_json<T: DeserializeOwned>(file: &Path, text: &str) -> anyhow::Result<T> {
+    let name = name(file);
     if text.trim().is_empty() {
         bail!("{name} is empty: JSON was expected");
     }
-    serde_json::from_str(text).map_err(|e| {
-        let line = text.lines().nth(e.line().saturating_sub(1)).unwrap_or_default();
+    let at = |e: serde_json::Error| {
+        let excerpt = text.lines().nth(e.line().saturating_sub(1)).unwrap_or_default();
         let start = e.column().saturating_sub(40);
-        let excerpt: String = line.chars().skip(start).take(60).collect();
-        anyhow::anyhow!("{name}:{}:{}: {e}\n  | {excerpt}", e.line(), e.column())
-    })
+        let excerpt: String = excerpt.chars().skip(start).take(60).collect();
+        anyhow::anyhow!("{name}:{}:{}: {}\n  | {}", e.line(), e.column(), line(&e.to_string()), line(&excerpt))
+    };
+    // For its places in errors; what is used is read from the harmless value.
+    drop(serde_json::from_str::<T>(text).map_err(at)?);
+    let mut value: Value = serde_json::from_str(text).map_err(at)?;
+    disarm(&mut value);
+    serde_json::from_value(value).with_context(|| name.clone())
+}
+
+/// Makes all texts in a value harmless.
+fn disarm(value: &mut Value) {
+    match value {
+        Value::String(text) => *text = line(text).into_owned(),
+        Value::Array(items) => items.iter_mut().for_each(disarm),
+        Value::Object(map) => {
+            let entries = std::mem::take(map);
+            map.extend(entries.into_iter().map(|(key, mut value)| {
+                disarm(&mut value);
+                (line(&key).into_owned(), value)
+            }));
+        }
+        _ => {}
+    }
 }

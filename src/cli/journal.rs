@@ -4,12 +4,13 @@
 //! reported; either step is taken again. What was found with other settings stays: with these settings
 //! it serves again.
 
-use super::output;
+use super::output::{self, note};
+use super::{input, whole};
 use anyhow::{Context, bail};
 use indicatif::ProgressBar;
 use piaffe::model::Gait;
 use piaffe::motion::Criterion;
-use piaffe::result::GaitResult;
+use piaffe::result::{GaitResult, file_name};
 use piaffe::search::journal::Journal;
 use piaffe::search::multi_start::Settings;
 use serde::{Deserialize, Serialize};
@@ -40,24 +41,23 @@ struct State {
     failure: Option<anyhow::Error>,
 }
 
-/// Name of a point's file.
-pub fn file(gait: &str, criterion: Criterion, speed: f64) -> String {
-    format!("{}-{}-{speed:.4}.json", gait.replace('/', "-"), criterion.name())
-}
-
 impl Folder {
     /// Opens or makes the folder. Damage is told on the bar's stream.
     ///
     /// # Errors
     /// If it cannot be written to, or another sweep is doing so.
     pub fn open(path: &Path, bar: ProgressBar) -> anyhow::Result<Folder> {
-        std::fs::create_dir_all(path).with_context(|| format!("cannot create {}", path.display()))?;
+        std::fs::create_dir_all(path).with_context(|| format!("cannot create {}", input::name(path)))?;
         let name = path.join("journal.jsonl");
-        let cannot = || format!("cannot use {}", name.display());
+        let cannot = || format!("cannot use {}", input::name(&name));
+        if name.metadata().is_ok_and(|there| !there.is_file()) {
+            bail!("{}: it is no file", cannot());
+        }
         let mut journal = OpenOptions::new().read(true).append(true).create(true).open(&name).with_context(cannot)?;
         if let Err(TryLockError::WouldBlock) = journal.try_lock() {
-            bail!("another sweep is writing to {}: wait for it, or give another --out", path.display());
+            bail!("another sweep is writing to {}: wait for it, or give another --out", input::name(path));
         }
+        whole::tidy(path);
         let mut bytes = Vec::new();
         journal.read_to_end(&mut bytes).with_context(cannot)?;
         let whole = bytes.iter().rposition(|b| *b == b'\n').map_or(0, |last| last + 1);
@@ -68,7 +68,9 @@ impl Folder {
         for (n, line) in bytes[..whole].split(|b| *b == b'\n').enumerate().filter(|(_, line)| !line.is_empty()) {
             match serde_json::from_slice::<Entry>(line) {
                 Ok(entry) => drop(known.insert(entry.step, entry.outcome)),
-                Err(error) => note(&format!("{}:{}: {error}; this step is taken again", name.display(), n + 1)),
+                Err(error) => {
+                    note(&format!("{}:{}: {error}; this step is taken again", input::name(&name), n + 1));
+                }
             }
         }
         Ok(Folder { path: path.into(), bar, state: Mutex::new(State { journal, known, failure: None }) })
@@ -79,17 +81,19 @@ impl Folder {
         let earlier: Option<Run> = self.known(RUN).and_then(|outcome| serde_json::from_value(outcome).ok());
         let run = Run::new(gaits, settings, earlier.as_ref());
         for difference in earlier.iter().flat_map(|earlier| run.differences(earlier)) {
-            note(&format!("the last run in {} had {difference}: what differs is searched anew", self.path.display()));
+            let folder = input::name(&self.path);
+            note(&format!("the last run in {folder} had {difference}: what differs is searched anew"));
         }
         if let (true, Ok(outcome)) = (earlier.as_ref() != Some(&run), serde_json::to_value(&run)) {
             self.record(RUN, outcome);
         }
         for (gait, criterion) in gaits.iter().flat_map(|g| criteria.iter().map(move |c| (g, *c))) {
+            let d = gait.description();
             for speed in speeds {
-                let path = self.path.join(file(gait.description().key, criterion, *speed));
+                let path = self.path.join(file_name(d.key, criterion, *speed, d.limits.real_legs));
                 let Ok(text) = std::fs::read(&path) else { continue };
                 if let Err(error) = serde_json::from_slice::<GaitResult>(&text) {
-                    note(&format!("{} is damaged ({error}): it is written anew", path.display()));
+                    note(&format!("{} is damaged ({error}): it is written anew", input::name(&path)));
                 }
             }
         }
@@ -100,8 +104,7 @@ impl Folder {
     /// # Errors
     /// If it cannot be written.
     pub fn write(&self, result: &GaitResult) -> anyhow::Result<()> {
-        let path = self.path.join(file(&result.gait, result.criterion, result.speed));
-        output::write_json(&path, result)
+        output::write_json(&self.path.join(result.file_name()), result)
     }
 
     /// The first failure to write, if there was one.
@@ -157,10 +160,6 @@ impl Run {
     }
 }
 
-fn note(text: &str) {
-    eprintln!("note: {text}");
-}
-
 impl Journal for Folder {
     fn known(&self, step: &str) -> Option<Value> {
         self.state().known.get(step).cloned()
@@ -170,8 +169,14 @@ impl Journal for Folder {
         let entry = Entry { step: step.into(), outcome };
         let mut state = self.state();
         let written = serde_json::to_string(&entry).map_err(anyhow::Error::from).and_then(|line| {
+            let length = state.journal.metadata()?.len();
             // One call: a run that is killed leaves whole lines or one that is cut off.
-            Ok(state.journal.write_all(format!("{line}\n").as_bytes())?)
+            let written = state.journal.write_all(format!("{line}\n").as_bytes());
+            if written.is_err() {
+                // The next line must not be the end of this one.
+                state.journal.set_len(length)?;
+            }
+            Ok(written?)
         });
         if let Err(error) = written {
             state.failure.get_or_insert(error.context("cannot write the sweep's journal"));

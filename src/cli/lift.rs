@@ -1,12 +1,11 @@
 //! `piaffe lift`: the motion of a result, for the real legs.
 
-use super::{input, output};
-use anyhow::Context;
+use super::document::read_result;
+use super::output;
 use clap::ValueEnum;
 use piaffe::four_legs::{Lift, RealLegs, Verdict, csv, json};
 use piaffe::gaits::GAITS;
 use piaffe::readback::Readback;
-use std::io::Write;
 use std::path::Path;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -18,21 +17,16 @@ pub enum Format {
 }
 
 /// Writes the lifted motion of the result in `file` (`-`: standard input) to `out` (`-`: standard output).
-pub fn run(file: &str, format: Format, rate: f64, out: &str) -> anyhow::Result<bool> {
-    let Readback { gait, motion, .. } = Readback::new(input::read_json(file)?, GAITS)?;
+pub fn run(file: &Path, format: Format, rate: f64, out: &str) -> anyhow::Result<bool> {
+    let Readback { gait, motion, .. } = Readback::new(read_result(file)?, GAITS)?;
     let lift = Lift::at_rate(gait, &motion, rate)?;
     let legs = RealLegs::of(&lift);
-    if matches!(legs.verdict(), Verdict::BeyondLimits | Verdict::NoEquilibrium) && !output::is_quiet() {
-        eprintln!("note: {}; see the columns `margin` and `remainder`", legs.sentence());
+    if matches!(legs.verdict(), Verdict::BeyondLimits | Verdict::NoEquilibrium) {
+        output::note(&format!("{}; see the columns `margin` and `remainder`", legs.sentence()));
     }
     match format {
         Format::Json => output::json_to(out, &json(&lift))?,
-        Format::Csv if out == "-" => {
-            let mut stdout = std::io::stdout().lock();
-            let written = stdout.write_all(csv(&lift).as_bytes()).and_then(|()| stdout.flush());
-            output::quiet_when_closed(written).context("cannot write")?;
-        }
-        Format::Csv => output::write_file(Path::new(out), csv(&lift).as_bytes())?,
+        Format::Csv => output::bytes_to(out, csv(&lift).as_bytes())?,
     }
     Ok(true)
 }

@@ -3,13 +3,12 @@
 use super::{command, output};
 use anyhow::Context;
 use clap_complete::{Shell, generate};
-use std::io::Write;
 use std::path::Path;
 
 pub fn completions(shell: Shell) -> anyhow::Result<bool> {
     let mut text = Vec::new();
     generate(shell, &mut command(), "piaffe", &mut text);
-    output::quiet_when_closed(std::io::stdout().lock().write_all(&text))?;
+    output::bytes_to("-", &text)?;
     Ok(true)
 }
 

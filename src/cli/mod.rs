@@ -1,7 +1,10 @@
 //! `piaffe`: what a person types, and what comes back.
 
+mod built;
+mod document;
 mod dynamics;
 mod export;
+mod harmless;
 mod import;
 mod input;
 mod journal;
@@ -15,8 +18,10 @@ mod report;
 mod summary;
 mod sweep;
 mod verify;
+mod whole;
 
 use clap::builder::PossibleValuesParser;
+use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
 use piaffe::gaits::GAITS;
 use piaffe::model::Gait;
@@ -70,7 +75,7 @@ enum Command {
         gait: String,
         /// JSON: {"states": [{"X": […], "Xdot": […], "Xddot": […], "Gamma": […]}]}; `-` reads standard input.
         #[arg(default_value = "-", value_name = "FILE|-")]
-        file: String,
+        file: PathBuf,
     },
     /// Show what was generated for a gait: coordinates, virtual legs, masses, kernels; or its equations.
     #[command(after_help = "Example:\n  piaffe model trot --latex > trot.tex && pdflatex trot.tex")]
@@ -91,7 +96,7 @@ enum Command {
     Import {
         /// The URDF; `-` reads standard input.
         #[arg(value_name = "FILE|-")]
-        file: String,
+        file: PathBuf,
         /// Folder for the specification; model-spec/ with the robot's name if it is not given.
         #[arg(long = "out", value_name = "DIR")]
         folder: Option<PathBuf>,
@@ -108,7 +113,7 @@ enum Command {
         #[arg(long, value_parser = criterion_names(), default_value = "energy")]
         criterion: String,
         /// Mean forward speed, m/s.
-        #[arg(long, value_parser = positive)]
+        #[arg(long, value_parser = speed)]
         speed: f64,
         /// Of the random starts.
         #[arg(long, default_value_t = 1)]
@@ -130,7 +135,7 @@ enum Command {
     Export {
         /// A result as JSON; `-` reads standard input.
         #[arg(value_name = "FILE|-")]
-        result: String,
+        result: PathBuf,
         #[arg(long, value_enum)]
         format: export::Format,
         /// Moments per second in csv and npz.
@@ -147,7 +152,7 @@ enum Command {
     Lift {
         /// A result as JSON; `-` reads standard input.
         #[arg(value_name = "FILE|-")]
-        result: String,
+        result: PathBuf,
         /// Moments per second.
         #[arg(long, default_value_t = 1000.0, value_parser = rate, value_name = "HZ")]
         rate: f64,
@@ -160,14 +165,15 @@ enum Command {
     /// Derive anew what results state, from the specification and the variables of their motions alone.
     ///
     /// Says of every entry whether it was confirmed, what it should be instead, or why it could not be checked. How a
-    /// motion was found (other optima, times, the search's settings) cannot be seen from it and is passed over.
+    /// motion was found (other optima, times, the search's settings) cannot be seen from it and is passed over. What a sweep
+    /// says of its results as a whole must follow from the results beside it, but for what ended a gait.
     #[command(
-        after_help = "Examples:\n  piaffe verify results/*.json\n  piaffe verify trot.json --json -\n\nThe exit code is 0 only if everything was confirmed."
+        after_help = "Examples:\n  piaffe verify results/*.json\n  piaffe verify trot.json --json -\n  piaffe verify sweep/*.json\n\nThe exit code is 0 only if everything was confirmed."
     )]
     Verify {
-        /// Results as JSON; `-` reads standard input.
-        #[arg(required = true, value_name = "FILE|-")]
-        results: Vec<String>,
+        /// Results as JSON, overviews of sweeps (`sweep.json`), or folders of them; `-` reads standard input.
+        #[arg(required = true, value_name = "FILE|DIR|-")]
+        results: Vec<PathBuf>,
         /// Write all verdicts as JSON; `-` is standard output.
         #[arg(long, value_name = "FILE|-")]
         json: Option<String>,
@@ -179,11 +185,11 @@ enum Command {
         after_help = "Examples:\n  piaffe report results/trot-energy.json --out trot\n  piaffe report sweep --out atlas"
     )]
     Report {
-        /// Results as JSON, or the folder of a sweep.
-        #[arg(required = true, value_name = "FILE|DIR")]
+        /// Results as JSON, or the folder of a sweep; `-` reads standard input.
+        #[arg(required = true, value_name = "FILE|DIR|-")]
         results: Vec<PathBuf>,
         /// Of results over many speeds, show in detail the walks at the speed nearest to this one, m/s.
-        #[arg(long, value_parser = positive, value_name = "SPEED")]
+        #[arg(long, value_parser = speed, value_name = "SPEED")]
         detail: Option<f64>,
         /// Folder for the report.
         #[arg(long, default_value = "report", value_name = "DIR")]
@@ -230,6 +236,25 @@ enum Command {
     },
 }
 
+impl Arguments {
+    /// Of what answers for a robot.
+    fn say_what_was_built(&self) {
+        let of = |gait: &str| built::note_of(&[by_name(gait)]);
+        match &self.command {
+            None => built::note_of(&first_robot().collect::<Vec<_>>()),
+            Some(Command::Dynamics { gait, .. } | Command::Model { gait, .. } | Command::Optimize { gait, .. }) => {
+                of(gait)
+            }
+            Some(Command::Sweep { gait, .. }) if gait.is_empty() => built::note_of(&first_robot().collect::<Vec<_>>()),
+            Some(Command::Sweep { gait, .. }) => built::note_of(&gait.iter().map(|g| by_name(g)).collect::<Vec<_>>()),
+            Some(Command::Verify { .. } | Command::Report { .. } | Command::Export { .. } | Command::Lift { .. }) => {
+                built::note_of_all()
+            }
+            Some(Command::Import { .. } | Command::Completions { .. } | Command::Manual { .. }) => {}
+        }
+    }
+}
+
 /// The command line itself, for whoever describes it.
 fn command() -> clap::Command {
     Arguments::command()
@@ -237,10 +262,20 @@ fn command() -> clap::Command {
 
 /// Runs the program.
 pub fn run() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            let _ = error.print();
+            if error.kind() == ErrorKind::InvalidValue {
+                built::note_of_all();
+            }
+            return ExitCode::from(error.exit_code() as u8);
+        }
+    };
     if arguments.quiet {
         output::be_quiet();
     }
+    arguments.say_what_was_built();
     let unsuccessful =
         if matches!(arguments.command, Some(Command::Verify { .. })) { NOT_CONFIRMED } else { NO_OPTIMUM };
     let outcome = match arguments.command {
@@ -268,11 +303,16 @@ pub fn run() -> ExitCode {
             sweep::run(&gaits, real_legs, &criteria, &speeds, &folder, &settings)
         }
     };
+    // A full disk is a failure, also where only words went there.
+    let outcome = outcome.and_then(|good| match output::lost() {
+        Some(error) => Err(anyhow::anyhow!("cannot write to standard output: {error}")),
+        None => Ok(good),
+    });
     match outcome {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(unsuccessful),
         Err(error) => {
-            eprintln!("error: {error:#}");
+            output::error(&error);
             ExitCode::FAILURE
         }
     }
@@ -301,10 +341,11 @@ fn criterion_by_name(name: &str) -> Criterion {
     Criterion::ALL.into_iter().find(|c| c.name() == name).unwrap_or(Criterion::Energy)
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+/// A speed, m/s.
+fn speed(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(v) if v.is_finite() && v > 0.0 => Ok(v),
-        Ok(_) => Err("must be a positive number of m/s".into()),
+        Ok(_) => Err("is no positive number of m/s; write for example 0.6".into()),
         Err(_) => Err("is not a number; write for example 0.6".into()),
     }
 }

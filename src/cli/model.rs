@@ -4,7 +4,6 @@ use super::output;
 use piaffe::model::{Description, Gait, HalfSteps, Rotation};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
-use std::io::Write;
 
 pub fn run(gait: &dyn Gait, latex: bool, json: Option<&str>) -> anyhow::Result<bool> {
     if let Some(target) = json {
@@ -12,7 +11,7 @@ pub fn run(gait: &dyn Gait, latex: bool, json: Option<&str>) -> anyhow::Result<b
     }
     if json != Some("-") {
         let text = if latex { gait.latex().to_string() } else { as_text(gait.description()) };
-        output::quiet_when_closed(std::io::stdout().lock().write_all(text.as_bytes()))?;
+        output::bytes_to("-", text.as_bytes())?;
     }
     Ok(true)
 }

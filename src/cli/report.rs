@@ -1,6 +1,7 @@
 //! `piaffe report`: results as a page with figures.
 
-use super::{input, output};
+use super::document::{self, Document, OVERVIEW, Stated};
+use super::{input, output, whole};
 use anyhow::{Context, bail};
 use piaffe::gaits::GAITS;
 use piaffe::readback::Readback;
@@ -9,59 +10,93 @@ use piaffe::result::GaitResult;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
-/// Reads results from files and folders and writes their report to `out`. What a result states is derived anew before it is shown.
-pub fn run(results: &[PathBuf], detail: Option<f64>, out: &Path) -> anyhow::Result<bool> {
+/// Reads results from files and folders and writes their report to `out`. What a result states is derived anew before it is
+/// shown; what cannot be read is told and left out.
+pub fn run(paths: &[PathBuf], detail: Option<f64>, out: &Path) -> anyhow::Result<bool> {
     let mut all = Vec::new();
     let mut extremes = Extremes::default();
-    for path in results {
-        if path.is_dir() {
-            all.extend(folder(path)?);
-            let summary = path.join("sweep.json");
-            if summary.exists() {
-                extremes = input::read_json(&summary.to_string_lossy())?;
+    let mut unread = 0;
+    for path in paths {
+        let files = match path.is_dir() {
+            // The results of a sweep are those that its overview names.
+            true if path.join(OVERVIEW).exists() => vec![path.join(OVERVIEW)],
+            true => document::files(path)?,
+            false => vec![path.clone()],
+        };
+        for file in files {
+            let results = match document::read(&file) {
+                Ok(Document::Results(results)) => results,
+                Ok(Document::Sweep(sweep)) => {
+                    let results: Vec<GaitResult> = sweep.results.iter().map(|r| r.result.clone()).collect();
+                    let audit = sweep.overview.audit(&sweep.value, &results);
+                    if let Some(d) = audit.statements.iter().flat_map(|s| &s.differences).next() {
+                        let (stated, found) = (&d.stated, &d.found);
+                        bail!(
+                            "{} states {stated} for {}, but its results give {found}; sweep again",
+                            sweep.name,
+                            d.place
+                        );
+                    }
+                    let more = sweep.overview.extremes();
+                    extremes.maximum_speeds.extend(more.maximum_speeds);
+                    extremes.comparisons.extend(more.comparisons);
+                    sweep.results.into_iter().map(Ok).collect()
+                }
+                Err(error) => vec![Err(error)],
+            };
+            for result in results {
+                match result {
+                    Ok(result) => all.push(result),
+                    Err(error) => {
+                        output::error(&error);
+                        unread += 1;
+                    }
+                }
             }
-        } else {
-            all.push(input::read_json::<GaitResult>(&path.to_string_lossy())?);
         }
+    }
+    if all.is_empty() && unread > 0 {
+        bail!("none of the results could be read");
     }
     let read = |result: GaitResult| match result.is_optimal() {
         true => Readback::new(result, GAITS).map(|readback| readback.result),
         false => Ok(result),
     };
-    let all = all.into_par_iter().map(read).collect::<Result<Vec<_>, _>>()?;
-    let index = write(all, extremes, detail, out)?;
+    let mut results = different(all)?.into_par_iter().map(read).collect::<Result<Vec<_>, _>>()?;
+    let place = |r: &GaitResult| GAITS.iter().position(|g| g.description().key == r.gait);
+    results.sort_by(|a, b| (a.criterion, place(a)).cmp(&(b.criterion, place(b))).then(a.speed.total_cmp(&b.speed)));
+    let index = write(results, extremes, detail, out)?;
     output::say!("{}", index.display());
+    if unread > 0 {
+        bail!("{unread} results could not be read: the report is without them");
+    }
     Ok(true)
+}
+
+/// Results that a report can tell apart: each once.
+fn different(all: Vec<Stated>) -> anyhow::Result<Vec<GaitResult>> {
+    let mut kept: Vec<Stated> = Vec::new();
+    for stated in all {
+        match kept.iter().find(|known| known.result.name() == stated.result.name()) {
+            Some(known) if known.result == stated.result => {}
+            Some(known) => {
+                let (a, b, what) = (&known.name, &stated.name, stated.result.name());
+                bail!("{a} and {b} are two different results of one task, {what}: give one of them");
+            }
+            None => kept.push(stated),
+        }
+    }
+    Ok(kept.into_iter().map(|stated| stated.result).collect())
 }
 
 /// Writes the report of these results; tells where its page is.
 pub fn write(results: Vec<GaitResult>, extremes: Extremes, detail: Option<f64>, out: &Path) -> anyhow::Result<PathBuf> {
     let report = Report::new(results, extremes, detail, GAITS)?;
     let figures = out.join("figures");
-    std::fs::create_dir_all(&figures).with_context(|| format!("cannot create {}", figures.display()))?;
+    std::fs::create_dir_all(&figures).with_context(|| format!("cannot create {}", input::name(&figures)))?;
+    [out, &figures].into_iter().for_each(whole::tidy);
     for file in report.files() {
-        output::write_file(&out.join(&file.path), &file.contents)?;
+        whole::write(&out.join(&file.path), &file.contents)?;
     }
     Ok(out.join("index.html"))
-}
-
-/// All results in a folder, by gait, criterion and speed.
-fn folder(path: &Path) -> anyhow::Result<Vec<GaitResult>> {
-    let cannot = || format!("cannot read the folder {}", path.display());
-    let mut files = Vec::new();
-    for entry in std::fs::read_dir(path).with_context(cannot)? {
-        let file = entry.with_context(cannot)?.path();
-        let is_result =
-            file.extension().is_some_and(|e| e == "json") && file.file_name().is_some_and(|n| n != "sweep.json");
-        files.extend(is_result.then_some(file));
-    }
-    files.sort();
-    if files.is_empty() {
-        bail!("{} has no results (*.json); `piaffe sweep --out {0}` makes some", path.display());
-    }
-    let mut results: Vec<GaitResult> =
-        files.iter().map(|f| input::read_json(&f.to_string_lossy())).collect::<Result<_, _>>()?;
-    let place = |r: &GaitResult| GAITS.iter().position(|g| g.description().key == r.gait);
-    results.sort_by(|a, b| (a.criterion, place(a)).cmp(&(b.criterion, place(b))).then(a.speed.total_cmp(&b.speed)));
-    Ok(results)
 }

@@ -1,18 +1,19 @@
 //! `piaffe sweep`: optima over speeds, greatest speeds and crossovers, resumed where an earlier run stopped.
 
-use super::journal::{Folder, effort, file};
-use super::{output, report};
+use super::document::OVERVIEW;
+use super::journal::{Folder, effort};
+use super::{output, report, speed};
 use indicatif::{ProgressBar, ProgressStyle};
 use piaffe::altered::Altered;
 use piaffe::model::Gait;
 use piaffe::motion::Criterion;
-use piaffe::result::{GaitResult, Status};
+use piaffe::overview::{Greatest, Overview};
+use piaffe::result::GaitResult;
 use piaffe::search::atlas::{VISITS, sweep};
-use piaffe::search::crossover::{Comparison, compare};
+use piaffe::search::crossover::{Comparison, solve};
 use piaffe::search::fastest::{MaximumSpeed, maximum_speed};
 use piaffe::search::multi_start::Settings;
 use rayon::prelude::*;
-use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
 
@@ -20,7 +21,7 @@ use std::path::Path;
 struct Line {
     gait: &'static dyn Gait,
     maximum: Option<MaximumSpeed>,
-    /// Per criterion: the points of the sweep, then the one at the greatest speed.
+    /// Per criterion, by speed: the points of the sweep, the one at the greatest speed, and those next to crossovers.
     results: Vec<Vec<GaitResult>>,
 }
 
@@ -36,15 +37,19 @@ pub fn run(
     let visits = VISITS * (criteria.len() * speeds.len()) as u64;
     let folder = Folder::open(path, progress(gaits.iter().map(|g| visits * effort(*g)).sum()))?;
     folder.compare(&gaits.iter().map(|g| *g as &dyn Gait).collect::<Vec<_>>(), criteria, speeds, settings);
-    let lines: Vec<Line> = gaits.par_iter().map(|gait| line(*gait, criteria, speeds, settings, &folder)).collect();
+    let mut lines: Vec<Line> = gaits.par_iter().map(|gait| line(*gait, criteria, speeds, settings, &folder)).collect();
     folder.bar.set_message("crossovers");
-    let mut comparisons = Vec::new();
+    let mut further = Vec::new();
     for c in 0..criteria.len() {
         for (k, a) in lines.iter().enumerate() {
-            for b in &lines[k + 1..] {
-                comparisons.extend(compare([a.gait, b.gait], [&a.results[c], &b.results[c]], settings, &folder));
+            for (l, b) in lines.iter().enumerate().skip(k + 1) {
+                let [of_a, of_b] = solve([a.gait, b.gait], [&a.results[c], &b.results[c]], settings, &folder);
+                further.extend([(k, c, of_a), (l, c, of_b)]);
             }
         }
+    }
+    for (line, c, results) in further {
+        lines[line].add(c, results);
     }
     folder.bar.finish_and_clear();
     if let Some(error) = folder.failure() {
@@ -54,13 +59,13 @@ pub fn run(
     for result in all() {
         folder.write(result)?;
     }
-    let summary = serde_json::to_value(Summary::new(&lines, &comparisons))?;
-    output::write_json(&path.join("sweep.json"), &summary)?;
-    output::quiet_when_closed(tell(&lines, criteria, speeds, &comparisons))?;
+    let overview = Overview::new(&all().cloned().collect::<Vec<_>>(), &ends(&lines));
+    output::write_json(&path.join(OVERVIEW), &overview)?;
+    output::quiet_when_closed(tell(&lines, criteria, speeds, &overview))?;
     output::say!("results in {}", path.display());
     let any = all().any(GaitResult::is_optimal);
     if any {
-        let page = report::write(all().cloned().collect(), serde_json::from_value(summary)?, None, path)?;
+        let page = report::write(all().cloned().collect(), overview.extremes(), None, path)?;
         output::say!("To be seen in {}", page.display());
     }
     Ok(any)
@@ -87,6 +92,28 @@ fn line(gait: &'static dyn Gait, criteria: &[Criterion], speeds: &[f64], setting
     Line { gait, maximum, results }
 }
 
+impl Line {
+    /// Adds results of a criterion at speeds that are not there yet.
+    fn add(&mut self, criterion: usize, results: Vec<GaitResult>) {
+        let line = &mut self.results[criterion];
+        for result in results {
+            let place = line.partition_point(|r| r.speed < result.speed);
+            if line.get(place).is_none_or(|r| r.speed != result.speed) {
+                line.insert(place, result);
+            }
+        }
+    }
+}
+
+/// Where the search found that the gaits end.
+fn ends(lines: &[Line]) -> Vec<Greatest> {
+    let end = |line: &Line| {
+        let MaximumSpeed { speed, ended_by, .. } = line.maximum.clone()?;
+        Some(Greatest { gait: line.gait.description().key.into(), speed, ended_by })
+    };
+    lines.iter().filter_map(end).collect()
+}
+
 /// A bar in units of effort, with what is left; hidden where standard error is no terminal.
 fn progress(effort: u64) -> ProgressBar {
     let style = ProgressStyle::with_template("{msg} {bar:30} {percent} % {elapsed}, about {eta} left");
@@ -94,64 +121,12 @@ fn progress(effort: u64) -> ProgressBar {
     bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())).with_message("optima")
 }
 
-/// What `sweep.json` holds.
-#[derive(Serialize)]
-struct Summary<'a> {
-    points: Vec<PointEntry<'a>>,
-    maximum_speeds: Vec<MaximumEntry<'a>>,
-    comparisons: &'a [Comparison],
-}
-
-#[derive(Serialize)]
-struct PointEntry<'a> {
-    gait: &'a str,
-    criterion: Criterion,
-    speed: f64,
-    status: Status,
-    cost: Option<f64>,
-    durations: &'a [f64],
-    /// Costs of all local optima that were found.
-    local_optima: Vec<f64>,
-    file: String,
-}
-
-#[derive(Serialize)]
-struct MaximumEntry<'a> {
-    gait: &'a str,
-    speed: f64,
-    ended_by: &'a [String],
-}
-
-impl<'a> Summary<'a> {
-    fn new(lines: &'a [Line], comparisons: &'a [Comparison]) -> Summary<'a> {
-        let point = |r: &'a GaitResult| PointEntry {
-            gait: &r.gait,
-            criterion: r.criterion,
-            speed: r.speed,
-            status: r.status,
-            cost: r.cost,
-            durations: &r.durations,
-            local_optima: r.local_optima.iter().map(|o| o.cost).collect(),
-            file: file(&r.gait, r.criterion, r.speed),
-        };
-        let maximum = |line: &'a Line| {
-            let MaximumSpeed { speed, ended_by, .. } = line.maximum.as_ref()?;
-            Some(MaximumEntry { gait: line.gait.description().key, speed: *speed, ended_by })
-        };
-        Summary {
-            points: lines.iter().flat_map(|line| line.results.iter().flatten()).map(point).collect(),
-            maximum_speeds: lines.iter().filter_map(maximum).collect(),
-            comparisons,
-        }
-    }
-}
-
-fn tell(lines: &[Line], criteria: &[Criterion], speeds: &[f64], comparisons: &[Comparison]) -> std::io::Result<()> {
+fn tell(lines: &[Line], criteria: &[Criterion], speeds: &[f64], overview: &Overview) -> std::io::Result<()> {
     let mut out = output::person();
     out.write_all(table(lines, criteria, speeds).as_bytes())?;
     for line in lines {
         let name = line.gait.description().key;
-        match &line.maximum {
+        match overview.maximum_speeds.iter().find(|m| m.gait == name) {
             Some(m) => {
                 let weightiest = &m.ended_by[..m.ended_by.len().min(3)];
                 let why = if weightiest.is_empty() { "no single constraint".into() } else { weightiest.join(", ") };
@@ -160,8 +135,8 @@ fn tell(lines: &[Line], criteria: &[Criterion], speeds: &[f64], comparisons: &[C
             None => writeln!(out, "{name}: no greatest speed found")?,
         }
     }
-    for comparison in comparisons {
-        writeln!(out, "{}", words(comparison, lines))?;
+    for comparison in &overview.comparisons {
+        writeln!(out, "{}", words(comparison, &overview.maximum_speeds))?;
     }
     Ok(())
 }
@@ -189,7 +164,7 @@ fn table(lines: &[Line], criteria: &[Criterion], speeds: &[f64]) -> String {
 }
 
 /// Which of two gaits is cheaper where, and why the comparison ends.
-fn words(comparison: &Comparison, lines: &[Line]) -> String {
+fn words(comparison: &Comparison, ends: &[Greatest]) -> String {
     let other = |name: &str| comparison.gaits.iter().find(|g| *g != name).map_or("", String::as_str).to_string();
     let [_, last] = comparison.common;
     let mut cheaper = comparison.cheaper.clone();
@@ -203,35 +178,50 @@ fn words(comparison: &Comparison, lines: &[Line]) -> String {
         text += &format!("{} overtakes {} {at} m/s; ", x.to, other(&x.to));
         cheaper.clone_from(&x.to);
     }
-    let ends = lines.iter().find(|line| line.maximum.as_ref().is_some_and(|m| m.speed == last));
-    let until = match ends.map(|line| line.gait.description().key) {
-        Some(gait) => format!("until the {gait} ends"),
+    let until = match ends.iter().find(|end| end.speed == last) {
+        Some(end) => format!("until the {} ends", end.gait),
         None => "to the end of the sweep".into(),
     };
     text + &format!("{cheaper} is cheaper than {} {until} at {last:.3} m/s", other(&cheaper))
 }
 
+/// More speeds than this are a slip of the pen.
+const MOST: usize = 10_000;
+
 /// `0.1..1.6:0.1` or `0.3,0.6,0.9`, in m/s.
 pub fn parse_speeds(text: &str) -> Result<Vec<f64>, String> {
-    let number = |t: &str| match t.trim().parse::<f64>() {
-        Ok(v) if v.is_finite() && v > 0.0 => Ok(v),
-        _ => Err(format!("`{t}` is not a positive speed; write 0.1..1.6:0.1 or 0.3,0.6,0.9")),
-    };
+    let number = |t: &str| speed(t.trim()).map_err(|why| format!("`{}` {why}", t.trim()));
     let mut speeds = if let Some((range, step)) = text.split_once(':') {
         let (from, to) = range.split_once("..").ok_or("a range reads FROM..TO:STEP, for example 0.1..1.6:0.1")?;
         let (from, to, step) = (number(from)?, number(to)?, number(step)?);
+        if to < from {
+            return Err(format!("the range ends below its beginning: write {to}..{from}:{step}"));
+        }
         let count = ((to - from) / step + 1e-9).floor();
-        if !(0.0..10_000.0).contains(&count) {
-            return Err("the range has no or too many speeds".into());
+        if count >= MOST as f64 {
+            return Err(format!("the range has {count:.3e} speeds, which is more than {MOST}: take a greater step"));
+        }
+        if from + step == from {
+            return Err(format!("a step of {step} is nothing beside {from}: take a greater step"));
         }
         // Multiples of the step, free of accumulated rounding.
-        (0..=count as usize).map(|k| ((from + k as f64 * step) * 1e9).round() / 1e9).collect()
+        (0..=count as usize).map(|k| rounded(from + k as f64 * step)).collect()
+    } else if text.contains("..") {
+        return Err("a range reads FROM..TO:STEP, for example 0.1..1.6:0.1".into());
     } else {
         text.split(',').map(number).collect::<Result<Vec<_>, _>>()?
     };
     speeds.sort_by(f64::total_cmp);
     speeds.dedup();
-    Ok(speeds)
+    match speeds.len() {
+        count if count > MOST => Err(format!("these are {count} speeds, which is more than {MOST}")),
+        _ => Ok(speeds),
+    }
+}
+
+/// To the digits that a person may have meant.
+fn rounded(speed: f64) -> f64 {
+    format!("{speed:.11e}").parse().unwrap_or(speed)
 }
 
 #[cfg(test)]
@@ -241,7 +231,37 @@ mod tests {
     #[test]
     fn ranges_and_lists_are_speeds() {
         assert_eq!(parse_speeds("0.1..0.4:0.1").unwrap(), [0.1, 0.2, 0.3, 0.4]);
-        assert_eq!(parse_speeds("0.6,0.3").unwrap(), [0.3, 0.6]);
-        assert!(parse_speeds("0.1..").is_err() && parse_speeds("fast").is_err() && parse_speeds("1..0.5:0.1").is_err());
+        assert_eq!(parse_speeds("0.6,0.3, 0.6").unwrap(), [0.3, 0.6]);
+        assert_eq!(parse_speeds("1..1:1").unwrap(), [1.0]);
+        assert_eq!(parse_speeds("0.1..1.6:0.1").unwrap().len(), 16);
+        for bad in
+            ["0.1..", "0.1..0.2", "fast", "1..0.5:0.1", "", ",", "0.6,", "0.6,-0.3", "0.6,nan", "0,0.6", "0.1..0.2:0"]
+        {
+            assert!(parse_speeds(bad).is_err(), "{bad}");
+        }
+    }
+
+    /// However odd a range is: all its speeds are positive and finite, and they differ, or it is refused.
+    #[test]
+    fn ranges_have_no_speeds_that_are_none() {
+        assert_eq!(parse_speeds("1e-10..3e-10:1e-10").unwrap(), [1e-10, 2e-10, 3e-10]);
+        assert_eq!(parse_speeds("0.60001,0.60002").unwrap(), [0.60001, 0.60002]);
+        let numbers = ["1e-320", "1e-12", "1e-9", "1e-5", "0.1", "0.6", "1", "1e3", "1e17", "1e300", "1e308", "inf"];
+        let mut accepted = 0;
+        for from in numbers {
+            for to in numbers {
+                for step in numbers {
+                    let range = format!("{from}..{to}:{step}");
+                    let Ok(speeds) = parse_speeds(&range) else { continue };
+                    accepted += 1;
+                    assert!(
+                        !speeds.is_empty() && speeds.iter().all(|v| v.is_finite() && *v > 0.0),
+                        "{range}: {speeds:?}"
+                    );
+                    assert!(speeds.is_sorted_by(|a, b| a < b), "{range}: {speeds:?}");
+                }
+            }
+        }
+        assert!(accepted > 50, "{accepted}");
     }
 }

@@ -1,55 +1,81 @@
 //! `piaffe verify`: what results state, derived anew.
 
+use super::document::{self, Document};
 use super::{input, output};
 use anyhow::bail;
 use piaffe::audit::{Audit, Statement, Verdict};
 use piaffe::gaits::GAITS;
-use piaffe::result::GaitResult;
 use serde::Serialize;
-use serde_json::Value;
 use std::io::Write;
+use std::path::{Path, PathBuf};
 
 /// Differences of a statement that are printed.
 const SHOWN: usize = 3;
 
-/// What is written of a file.
+/// What is written of a result.
 #[derive(Serialize)]
-struct Entry<'a> {
-    file: &'a str,
+struct Entry {
+    /// Its file, and which of the file's results it is if there are several.
+    file: String,
     confirmed: bool,
     #[serde(flatten)]
     audit: Audit,
 }
 
-/// Checks results; true if all that they state about their motions was confirmed. One that cannot be read does not keep
-/// the others from being checked.
-pub fn run(files: &[String], json: Option<&str>) -> anyhow::Result<bool> {
+/// Checks results and sweeps' overviews; true if all that they state about their motions was confirmed. One that cannot be
+/// read does not keep the others from being checked.
+pub fn run(files: &[PathBuf], json: Option<&str>) -> anyhow::Result<bool> {
     let mut entries = Vec::new();
-    for file in files {
-        match audit(file) {
-            Ok(audit) => {
-                if json != Some("-") {
-                    output::quiet_when_closed(print(file, &audit))?;
+    let mut unread = 0;
+    for file in files.iter().flat_map(|file| in_folder(file)) {
+        for audit in file.map_or_else(|error| vec![Err(error)], |file| audits(&file)) {
+            match audit {
+                Ok((file, audit)) => {
+                    if json != Some("-") {
+                        output::quiet_when_closed(print(&file, &audit))?;
+                    }
+                    entries.push(Entry { file, confirmed: audit.is_confirmed(), audit });
                 }
-                entries.push(Entry { file, confirmed: audit.is_confirmed(), audit });
+                Err(error) => {
+                    output::error(&error);
+                    unread += 1;
+                }
             }
-            Err(error) => eprintln!("error: {error:#}"),
         }
     }
     if let Some(target) = json {
         output::json_to(target, &entries)?;
     }
-    if entries.len() < files.len() {
-        bail!("{} of {} results could not be read", files.len() - entries.len(), files.len());
+    if unread > 0 {
+        bail!("{unread} of {} results could not be read", unread + entries.len());
     }
     Ok(entries.iter().all(|entry| entry.confirmed))
 }
 
-fn audit(file: &str) -> anyhow::Result<Audit> {
-    let text = input::read_text(file)?;
-    let result: GaitResult = input::parse_json(file, &text)?;
-    let stated: Value = input::parse_json(file, &text)?;
-    Ok(Audit::new(&stated, &result, GAITS))
+/// A file, or those of a folder.
+fn in_folder(path: &Path) -> Vec<anyhow::Result<PathBuf>> {
+    if input::is_standard(path) || !path.is_dir() {
+        return vec![Ok(path.into())];
+    }
+    match document::files(path) {
+        Ok(files) => files.into_iter().map(Ok).collect(),
+        Err(error) => vec![Err(error)],
+    }
+}
+
+/// The audits of all that is in a file, each with its name.
+fn audits(file: &Path) -> Vec<anyhow::Result<(String, Audit)>> {
+    match document::read(file) {
+        Ok(Document::Results(results)) => {
+            let audit = |stated: document::Stated| (Audit::new(&stated.value, &stated.result, GAITS), stated.name);
+            results.into_iter().map(|r| r.map(audit).map(|(audit, name)| (name, audit))).collect()
+        }
+        Ok(Document::Sweep(sweep)) => {
+            let results: Vec<_> = sweep.results.iter().map(|stated| stated.result.clone()).collect();
+            vec![Ok((sweep.name, sweep.overview.audit(&sweep.value, &results)))]
+        }
+        Err(error) => vec![Err(error)],
+    }
 }
 
 fn print(file: &str, audit: &Audit) -> std::io::Result<()> {

@@ -6,28 +6,16 @@ use super::plot::{Axis, Curve, Limit, Plot};
 use super::scene::{Anchor, Dash, Pen, Scene};
 use super::subject::spaced;
 use crate::motion::Criterion;
+use crate::overview::Greatest;
 use crate::result::GaitResult;
 use crate::search::crossover::Comparison;
-use serde::Deserialize;
 use std::collections::BTreeMap;
 
-/// What a sweep tells beside its points, as it stands in `sweep.json`.
-#[derive(Clone, Debug, Default, Deserialize)]
+/// What a sweep tells beside its points; see [`Overview`](crate::overview::Overview).
+#[derive(Clone, Debug, Default)]
 pub struct Extremes {
-    #[serde(default)]
     pub maximum_speeds: Vec<Greatest>,
-    #[serde(default)]
     pub comparisons: Vec<Comparison>,
-}
-
-/// The greatest speed of a gait.
-#[derive(Clone, Debug, Deserialize)]
-pub struct Greatest {
-    pub gait: String,
-    /// m/s.
-    pub speed: f64,
-    /// What conflicts just above it, weightiest first.
-    pub ended_by: Vec<String>,
 }
 
 /// Where one gait becomes cheaper than another.

@@ -38,7 +38,7 @@ use crate::readback::Unusable;
 use crate::result::GaitResult;
 use crate::stance::Undefined;
 use atlas::Atlas;
-pub use atlas::{Extremes, Greatest};
+pub use atlas::Extremes;
 
 /// Why there is no report.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -96,8 +96,7 @@ fn draw(scene: &Scene) -> (States, Vec<u8>) {
                 let [r, g, b] = ink.rgb();
                 let [x, y] = flip([at[0] - shift * weight.width(text, *size), at[1]]);
                 let face = weight.face();
-                let glyphs: Vec<u8> =
-                    text.chars().flat_map(|ch| face.glyph_index(ch).unwrap_or_default().0.to_be_bytes()).collect();
+                let glyphs: Vec<u8> = text.chars().flat_map(|c| face.glyph(c).to_be_bytes()).collect();
                 c.set_fill_rgb(r, g, b);
                 c.begin_text().set_font(font_name(*weight), *size as f32).next_line(x, y);
                 c.show(Str(&glyphs)).end_text();
@@ -130,7 +129,7 @@ fn embed(pdf: &mut Pdf, weight: Weight, [font, descendant, descriptor, file, cha
     let name = format!("Inter-{}", if weight == Weight::Bold { "SemiBold" } else { "Regular" });
     let name = Name(name.as_bytes());
     let system = SystemInfo { registry: Str(b"Adobe"), ordering: Str(b"Identity"), supplement: 0 };
-    let scale = 1000.0 / f32::from(face.units_per_em());
+    let scale = 1000.0 / face.units_per_em as f32;
     pdf.type0_font(font)
         .base_font(name)
         .encoding_predefined(Name(b"Identity-H"))
@@ -138,29 +137,24 @@ fn embed(pdf: &mut Pdf, weight: Weight, [font, descendant, descriptor, file, cha
         .to_unicode(characters);
     let mut cid = pdf.cid_font(descendant);
     cid.subtype(CidFontType::Type0).base_font(name).system_info(system).font_descriptor(descriptor);
-    let glyphs = (0..face.number_of_glyphs()).map(ttf_parser::GlyphId);
-    cid.widths().consecutive(0, glyphs.map(|g| f32::from(face.glyph_hor_advance(g).unwrap_or(0)) * scale));
+    cid.widths().consecutive(0, face.advances.iter().map(|advance| f32::from(*advance) * scale));
     cid.finish();
-    let b = face.global_bounding_box();
     let edge = |x: i16| f32::from(x) * scale;
+    let [left, lower, right, upper] = face.bounds.map(edge);
     pdf.font_descriptor(descriptor)
         .name(name)
         .flags(FontFlags::NON_SYMBOLIC)
-        .bbox(Rect::new(edge(b.x_min), edge(b.y_min), edge(b.x_max), edge(b.y_max)))
+        .bbox(Rect::new(left, lower, right, upper))
         .italic_angle(0.0)
-        .ascent(edge(face.ascender()))
-        .descent(edge(face.descender()))
-        .cap_height(edge(face.capital_height().unwrap_or(700)))
+        .ascent(edge(face.ascender))
+        .descent(edge(face.descender))
+        .cap_height(edge(face.capital_height))
         .stem_v(80.0)
         .font_file3(file);
     pdf.stream(file, weight.bytes()).pair(Name(b"Subtype"), Name(b"OpenType"));
     let mut map = pdf_writer::types::UnicodeCmap::new(Name(b"Glyphs"), system);
-    for subtable in face.tables().cmap.iter().flat_map(|t| t.subtables).filter(|t| t.is_unicode()) {
-        subtable.codepoints(|code| {
-            if let (Some(c), Some(glyph)) = (char::from_u32(code), subtable.glyph_index(code)) {
-                map.pair(glyph.0, c);
-            }
-        });
+    for (c, glyph) in &face.glyphs {
+        map.pair(*glyph, *c);
     }
     pdf.cmap(characters, &map.finish());
 }

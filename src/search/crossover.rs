@@ -1,4 +1,6 @@
 //! Where one gait becomes cheaper than another: solved for, both gaits optimized at the crossing.
+//!
+//! What is solved for are further results of both; a comparison follows from results alone.
 
 use super::atlas::search_at;
 use super::journal::Journal;
@@ -12,7 +14,7 @@ use serde::{Deserialize, Serialize};
 const BISECTION: f64 = 1e-4;
 
 /// Two gaits over the speeds at which both go.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
     pub criterion: Criterion,
     pub gaits: [String; 2],
@@ -25,7 +27,7 @@ pub struct Comparison {
 }
 
 /// Where the cheaper of two gaits changes.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Crossover {
     /// Speeds just below and above, m/s.
     pub bracket: [f64; 2],
@@ -55,32 +57,53 @@ impl Pair {
     }
 }
 
-/// Compares two gaits by their optima over the same speeds, the greatest ones among them.
-pub fn compare(
+impl Comparison {
+    /// Compares two gaits by their optima at the speeds at which both have one. `lines`: results of one criterion by speed.
+    pub fn of(lines: [&[GaitResult]; 2]) -> Option<Comparison> {
+        let pair = |a: &GaitResult| {
+            let b = lines[1].iter().find(|b| b.speed == a.speed && b.is_optimal())?;
+            a.is_optimal().then(|| Pair { speed: a.speed, results: [a.clone(), b.clone()] })
+        };
+        let pairs: Vec<Pair> = lines[0].iter().filter_map(pair).collect();
+        let (first, last) = (pairs.first()?, pairs.last()?);
+        let names = lines.map(|line| line[0].gait.clone());
+        let changes = pairs.windows(2).filter(|w| w[0].cheaper() != w[1].cheaper());
+        let crossovers = changes.map(|w| Crossover {
+            bracket: [w[0].speed, w[1].speed],
+            to: names[w[1].cheaper()].clone(),
+            costs: [w[0].costs(), w[1].costs()],
+        });
+        Some(Comparison {
+            criterion: lines[0][0].criterion,
+            common: [first.speed, last.speed],
+            cheaper: names[first.cheaper()].clone(),
+            crossovers: crossovers.collect(),
+            gaits: names,
+        })
+    }
+}
+
+/// Further optima of two gaits: at the speeds that only one of them has, the greatest ones among them, and next to where the
+/// cheaper one changes.
+pub fn solve(
     gaits: [&dyn Gait; 2],
     lines: [&[GaitResult]; 2],
     settings: &Settings,
     journal: &dyn Journal,
-) -> Option<Comparison> {
-    let criterion = lines[0].first()?.criterion;
-    let pairs = pairs(gaits, lines, settings, journal);
-    let (first, last) = (pairs.first()?, pairs.last()?);
-    let names = gaits.map(|g| g.description().key.to_string());
-    let mut crossovers = Vec::new();
-    for w in pairs.windows(2) {
-        if w[0].cheaper() != w[1].cheaper() {
-            let [below, above] = bisect(gaits, w[0].clone(), w[1].clone(), settings, journal);
-            let to = names[above.cheaper()].clone();
-            let costs = [below.costs(), above.costs()];
-            crossovers.push(Crossover { bracket: [below.speed, above.speed], to, costs });
-        }
+) -> [Vec<GaitResult>; 2] {
+    let mut pairs = pairs(gaits, lines, settings, journal);
+    let mut next_to = Vec::new();
+    for w in pairs.windows(2).filter(|w| w[0].cheaper() != w[1].cheaper()) {
+        next_to.extend(bisect(gaits, w[0].clone(), w[1].clone(), settings, journal));
     }
-    Some(Comparison {
-        criterion,
-        common: [first.speed, last.speed],
-        cheaper: names[first.cheaper()].clone(),
-        gaits: names,
-        crossovers,
+    pairs.extend(next_to);
+    [0, 1].map(|k| {
+        let known = |speed: f64| lines[k].iter().any(|r| r.speed == speed);
+        let mut new: Vec<GaitResult> =
+            pairs.iter().filter(|pair| !known(pair.speed)).map(|pair| pair.results[k].clone()).collect();
+        new.sort_by(|a, b| a.speed.total_cmp(&b.speed));
+        new.dedup_by(|a, b| a.speed == b.speed);
+        new
     })
 }
 

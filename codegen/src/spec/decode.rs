@@ -8,7 +8,7 @@ use toml::de::DeValue;
 use super::Code;
 use super::diagnostic::{At, Sink};
 use super::keys::{Bound, Kind};
-use super::view::View;
+use super::view::{View, is_within_bounds};
 
 /// A list of names, and a list of such lists, each with its place.
 pub(super) type Names = At<Vec<At<String>>>;
@@ -38,6 +38,9 @@ impl View<'_> {
         let (Kind::Choices(words), DeValue::Array(items)) = (&field.key.kind, field.value) else {
             return field.wrong_type(sink);
         };
+        if !is_within_bounds(items.len(), &field.path, &field.span, sink) {
+            return None;
+        }
         let chosen: Vec<_> = items
             .iter()
             .map(|item| match item.get_ref() {
@@ -127,6 +130,9 @@ impl View<'_> {
         let DeValue::Table(entries) = field.value else {
             return field.wrong_type(sink);
         };
+        if !is_within_bounds(entries.len(), &field.path, &field.span, sink) {
+            return None;
+        }
         let mut entries: Vec<_> = entries.iter().collect();
         entries.sort_by_key(|(key, _)| key.span().start);
         let read: Vec<_> = entries
@@ -145,6 +151,9 @@ impl View<'_> {
         let DeValue::Array(lists) = field.value else {
             return field.wrong_type(sink);
         };
+        if !is_within_bounds(lists.len(), &field.path, &field.span, sink) {
+            return None;
+        }
         let mut all = Some(Vec::new());
         for list in lists.iter() {
             let read = match list.get_ref() {

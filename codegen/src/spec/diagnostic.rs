@@ -173,16 +173,33 @@ fn annotation(label: &Label, kind: AnnotationKind) -> annotate_snippets::Annotat
     kind.span(start..end).label(label.text.as_str())
 }
 
+/// Mistakes of one file that are kept. Nobody reads more, and files with very many are no specifications.
+const MOST: usize = 200;
+
+/// Characters of a title, a label or an advice. Names in them come from the file and may have any length.
+const LONGEST: usize = 2000;
+
+fn clipped(text: impl Into<String>) -> String {
+    let mut text = text.into();
+    if let Some((end, _)) = text.char_indices().nth(LONGEST) {
+        text.truncate(end);
+        text.push('…');
+    }
+    text
+}
+
 /// Collects the mistakes of one file.
 #[derive(Debug)]
 pub(super) struct Sink {
     source: Source,
     found: Vec<Diagnostic>,
+    /// Whether the mistake that was reported last is not among them.
+    dropped: bool,
 }
 
 impl Sink {
     pub fn new(source: Source) -> Self {
-        Self { source, found: Vec::new() }
+        Self { source, found: Vec::new(), dropped: false }
     }
 
     /// Records a mistake in this file.
@@ -194,24 +211,34 @@ impl Sink {
         label: impl Into<String>,
         help: impl Into<String>,
     ) {
+        self.dropped = self.is_full();
+        if self.dropped {
+            return;
+        }
         let primary = self.label(span, label);
-        self.found.push(Diagnostic { code, title: title.into(), primary, secondary: None, help: help.into() });
+        let (title, help) = (clipped(title), clipped(help));
+        self.found.push(Diagnostic { code, title, primary, secondary: None, help });
     }
 
     /// Adds a second label to the mistake that was recorded last.
     pub fn beside(&mut self, label: Label) {
-        if let Some(last) = self.found.last_mut() {
+        if let Some(last) = self.found.last_mut().filter(|_| !self.dropped) {
             last.secondary = Some(label);
         }
     }
 
     /// A label into this file.
     pub fn label(&self, span: &Span, text: impl Into<String>) -> Label {
-        Label { source: self.source.clone(), span: span.clone(), text: text.into() }
+        Label { source: self.source.clone(), span: span.clone(), text: clipped(text) }
     }
 
     pub fn is_empty(&self) -> bool {
         self.found.is_empty()
+    }
+
+    /// Whether further mistakes are dropped.
+    pub fn is_full(&self) -> bool {
+        self.found.len() == MOST
     }
 
     /// The mistakes in the order of the file.

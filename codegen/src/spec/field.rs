@@ -7,6 +7,7 @@ use super::decode::Names;
 use super::diagnostic::{At, Sink, Span};
 use super::keys::{Bound, Key};
 use super::nearest::nearest;
+use super::view::is_within_bounds;
 
 /// Numbers beyond this are mistakes in any unit used here, and would overflow in later products.
 const LARGEST: f64 = 1e9;
@@ -101,6 +102,9 @@ impl Field<'_> {
         let DeValue::Array(items) = self.value else {
             return self.wrong_type(sink);
         };
+        if !is_within_bounds(items.len(), &self.path, &self.span, sink) {
+            return None;
+        }
         let read: Vec<_> = items.iter().map(|item| self.number(item.get_ref(), &item.span(), bound, sink)).collect();
         let numbers: Option<Vec<f64>> = read.into_iter().collect();
         match <[f64; N]>::try_from(numbers?) {
@@ -115,6 +119,9 @@ impl Field<'_> {
     }
 
     pub fn name_list(&self, items: &[toml::Spanned<DeValue<'_>>], span: &Span, sink: &mut Sink) -> Option<Names> {
+        if !is_within_bounds(items.len(), &self.path, span, sink) {
+            return None;
+        }
         let read: Vec<_> = items
             .iter()
             .map(|item| match item.get_ref() {

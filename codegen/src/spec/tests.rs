@@ -188,6 +188,49 @@ fn refuse(found: Option<Vec<Diagnostic>>) {
     assert!(found.iter().take(5).all(|d| d.render().starts_with("error[S")));
 }
 
+/// Inputs that are large in every way that a file can be: each is refused in a moment, with few words.
+#[test]
+fn huge_inputs() {
+    const N: usize = 200_000;
+    let robot = shipped_robot();
+    let (spec, trot) = (read("robot.toml"), read("gaits/trot.toml"));
+    let many = |line: &dyn Fn(usize) -> String| (0..N).map(line).collect::<String>();
+    let list = |item: &str| format!("[{}]", format!("{item}, ").repeat(N));
+    let robots = [
+        many(&|k| format!("key_{k} = {k}\n")),
+        format!("{}\n{spec}", many(&|k| format!("key_{k} = {k}\n"))),
+        format!("{spec}\n{}", many(&|k| format!("[links.l{k}]\nmas = 1\n"))),
+        format!("{spec}\n[legs.more]\n{}", many(&|k| format!("mount_{k} = [0, 0, {k}]\n"))),
+        format!("{spec}\n{}", many(&|k| format!("[joints.j{k}]\nparent = \"l{k}\"\nchild = \"l{}\"\n", k + 1))),
+        format!("{spec}\n{}", many(&|k| format!("[actuators.a{k}]\ngear = 1\n"))),
+        spec.replace("[0.187, 0.0, -0.15]", &list("0.0")),
+        spec.replace("name = \"quadruped\"", &format!("name = \"{}\"", "x\\n".repeat(N))),
+        spec.replace("parent = \"platform\"", &format!("parent = \"{}\"", "x".repeat(5 * N))),
+        "= 1\n\n\n\n".repeat(N),
+    ];
+    let gaits = [
+        trot.replace("virtual_legs = [", &format!("virtual_legs = [{} [", list("\"fore_left\"") + ",")),
+        trot.replace("virtual_legs = [", &format!("virtual_legs = [{}", "[\"fore_left\"], ".repeat(N))),
+        trot.replace("moves = [", &format!("moves = [{}", "\"y\", ".repeat(N))),
+        format!("{trot}\n[locked]\n{}", many(&|k| format!("joint_{k} = 0.0\n"))),
+    ];
+    for (k, text) in robots.iter().chain(&gaits).enumerate() {
+        assert!(text.len() > N, "{k}: nothing was replaced");
+        let started = std::time::Instant::now();
+        let found = match k < robots.len() {
+            true => parse_robot("robot.toml", text).err(),
+            false => parse_gait("trot.toml", text, &robot).err(),
+        };
+        let found = found.unwrap_or_else(|| panic!("{k}: accepted"));
+        assert!((1..=200).contains(&found.len()), "{k}: {}", found.len());
+        let words: usize = found.iter().take(5).map(|d| d.render().len()).sum();
+        let seconds = started.elapsed().as_secs_f64();
+        assert!(words < 50_000, "{k}: {words} characters");
+        println!("{k}: {seconds:.2} s, {} mistakes, {words} characters", found.len());
+        assert!(seconds < 10.0, "{k}: {seconds:.1} s");
+    }
+}
+
 /// Thousands of small accidents to the shipped files: nothing panics, and whoever is refused is told why.
 #[test]
 fn accidents() {

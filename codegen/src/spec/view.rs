@@ -10,6 +10,23 @@ use super::keys::{Key, Kind, Table};
 use super::name;
 use super::nearest::nearest;
 
+/// No table or list of a specification has more entries. What is checked of each, and of each beside all others, then stays
+/// a matter of milliseconds.
+const MOST: usize = 256;
+
+/// Reports a table or list with more entries than a specification has.
+pub(super) fn is_within_bounds(entries: usize, path: &str, span: &Span, sink: &mut Sink) -> bool {
+    if entries > MOST {
+        let title = match path {
+            "" => format!("the file has {entries} keys"),
+            _ => format!("`{path}` has {entries} entries"),
+        };
+        let help = "none of them was looked at: write a robot, or a gait, with fewer";
+        sink.report(Code::WrongCount, title, span, format!("at most {MOST}"), help);
+    }
+    entries <= MOST
+}
+
 /// One table of the file together with its form.
 pub(super) struct View<'t> {
     entries: &'t DeTable<'t>,
@@ -24,7 +41,9 @@ impl<'t> View<'t> {
     /// Takes hold of a table; reports its unknown and its missing keys.
     pub fn open(entries: &'t DeTable<'t>, form: &'static Table, path: String, at: Span, sink: &mut Sink) -> Self {
         let view = Self { entries, form, path, at };
-        view.check_keys(sink);
+        if is_within_bounds(entries.len(), &view.path, &view.at, sink) {
+            view.check_keys(sink);
+        }
         view
     }
 
@@ -32,7 +51,7 @@ impl<'t> View<'t> {
         let known = || self.form.keys.iter().map(|k| k.name);
         let mut meant = Vec::new();
         for (key, span) in self.names() {
-            if known().any(|k| k == key) {
+            if known().any(|k| k == key) || sink.is_full() {
                 continue;
             }
             let absent = known().filter(|k| !self.entries.contains_key(*k));
@@ -148,6 +167,9 @@ impl<'t> View<'t> {
         let DeValue::Table(entries) = field.value else {
             return field.wrong_type(sink);
         };
+        if !is_within_bounds(entries.len(), &field.path, &self.key_span(name), sink) {
+            return None;
+        }
         let mut names: Vec<_> = entries.iter().collect();
         names.sort_by_key(|(key, _)| key.span().start);
         let views = names
