@@ -8,13 +8,12 @@
 use crate::certificate::{Certificate, certify};
 use crate::model::Gait;
 use crate::motion::{Criterion, Motion};
-use crate::optimality::{Optimality, optimality};
+use crate::optimality::{KKT_RESIDUAL, Optimality, optimality};
 use crate::verify::{Receipt, VerifyError, verify};
 
-/// Largest violation, cycle error and KKT residual with which a motion counts as an optimum.
+/// Largest violation and cycle error with which a motion counts as an optimum; and see [`KKT_RESIDUAL`].
 pub const VIOLATION: f64 = 1e-6;
 pub const CYCLE_ERROR: f64 = 1e-6;
-pub const KKT_RESIDUAL: f64 = 1e-5;
 /// Points per half step on which the constraints are checked.
 pub const GRID: usize = 2001;
 

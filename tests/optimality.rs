@@ -4,11 +4,10 @@ use piaffe::altered::Altered;
 use piaffe::gaits::GAITS;
 use piaffe::model::Gait;
 use piaffe::motion::{Criterion, Motion};
-use piaffe::optimality::{Linearized, Optimality, optimality};
+use piaffe::optimality::{KKT_RESIDUAL, Linearized, Optimality, optimality};
 use piaffe::search::local::{Local, Task};
 use piaffe::search::multi_start::{Settings, search};
 use piaffe::sqp::Control;
-use piaffe::verdict::KKT_RESIDUAL;
 use piaffe::walk::Walk;
 
 fn optimum(gait: &dyn Gait, criterion: Criterion, speed: f64) -> Local {

@@ -193,10 +193,15 @@ impl<'a> Cycle<'a> {
 
     /// The problem with twice as many elements, if these do not resolve the last simulated motion.
     pub fn finer(&self) -> Option<Cycle<'a>> {
-        let present = self.phases[0].mesh.elements;
         let coarse = |p: &Phase| p.mesh_error(self.gait).is_ok_and(|error| error > RESOLUTION);
-        let refine = present < FINEST * elements(self.description()) && self.phases.iter().any(coarse);
-        refine.then(|| Cycle::with_elements(self.gait, self.criterion, self.speed, 2 * present))
+        self.twice_as_fine().filter(|_| self.phases.iter().any(coarse))
+    }
+
+    /// The problem with twice as many elements, if there may be so many.
+    pub fn twice_as_fine(&self) -> Option<Cycle<'a>> {
+        let present = self.phases[0].mesh.elements;
+        let some = present < FINEST * elements(self.description());
+        some.then(|| Cycle::with_elements(self.gait, self.criterion, self.speed, 2 * present))
     }
 
     pub fn description(&self) -> &'a Description {

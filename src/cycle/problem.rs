@@ -5,6 +5,7 @@
 //! points in between do not disturb it.
 
 use super::dip::Dip;
+use super::phase::Phase;
 use super::{Cycle, Label, renamed};
 use crate::constraints::PathConstraint;
 use crate::constraints::sharing::pitches;
@@ -92,6 +93,17 @@ impl Cycle<'_> {
                 visit(dip, *mu);
             }
         }
+    }
+
+    /// Of these multipliers those of the rows between nodes, per half step.
+    pub fn dip_multipliers(&self, mu: &[f64]) -> Vec<Vec<f64>> {
+        let mut rest = &mu[self.first_dip_row()..];
+        let take = |phase: &Phase| {
+            let (own, others) = rest.split_at(phase.dips.len());
+            rest = others;
+            own.to_vec()
+        };
+        self.phases.iter().map(take).collect()
     }
 
     fn locate(&self, i: usize) -> Row {

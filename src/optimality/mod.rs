@@ -11,6 +11,8 @@ use crate::search::refine::dips;
 use crate::sqp::{Multipliers, Undefined, multipliers};
 use serde::{Deserialize, Serialize};
 
+/// Largest residual of an optimum.
+pub const KKT_RESIDUAL: f64 = 1e-5;
 /// Prices below this share of the largest are left out.
 const NEGLIGIBLE: f64 = 1e-9;
 /// A limit nearer than this (scaled) is active.
@@ -109,6 +111,8 @@ pub struct Linearized<'a> {
 }
 
 impl<'a> Linearized<'a> {
+    /// On the coarsest mesh that resolves the motion and on which the conditions hold, or the finest.
+    ///
     /// # Errors
     /// If the equations admit no such motion.
     ///
@@ -122,10 +126,16 @@ impl<'a> Linearized<'a> {
     ) -> Result<Linearized<'a>, Undefined> {
         let theta = theta(motion);
         let mut cycle = Cycle::resolving(gait, criterion, speed, &theta).map_err(|_| Undefined)?;
-        dips(&cycle).and_then(|dips| dips.impose(&mut cycle)).map_err(|_| Undefined)?;
-        let scale = cycle.scale();
-        let multipliers = multipliers(&mut cycle, &theta, scale)?;
-        Ok(Linearized { cycle, theta, multipliers })
+        loop {
+            dips(&cycle).and_then(|dips| dips.impose(&mut cycle)).map_err(|_| Undefined)?;
+            let scale = cycle.scale();
+            let multipliers = multipliers(&mut cycle, &theta, scale)?;
+            // A mesh that resolves the motion need not resolve the slopes of a constraint that hardly depends on Θ.
+            let finer = cycle.twice_as_fine().filter(|_| multipliers.kkt.optimality() > KKT_RESIDUAL);
+            let Some(mut finer) = finer else { return Ok(Linearized { cycle, theta, multipliers }) };
+            finer.simulate(&theta).map_err(|_| Undefined)?;
+            cycle = finer;
+        }
     }
 
     /// Names of limits that are active but have no price: the slightest change may make them hold the optimum, or not.

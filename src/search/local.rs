@@ -10,8 +10,10 @@ use crate::stance::Undefined;
 
 /// Violation between nodes (scaled) at which refinement stops.
 const DENSE: f64 = 1e-7;
-/// Change of an active row between nodes (scaled) at which it does.
-const SETTLED: f64 = 1e-9;
+/// Change of an active row between nodes at which it does (see `look`).
+const SETTLED: f64 = 1e-8;
+/// Rounds after which a mesh must do on which they go on changing.
+const PATIENCE: usize = 5;
 const ROUNDS: usize = 20;
 
 /// What is asked for: the cheapest motion of a gait at a mean speed (m/s).
@@ -125,53 +127,71 @@ impl Task<'_> {
     /// The optimum near `start`, on a mesh that resolves it.
     fn polish(&self, start: &[f64], first_step_limit: f64, observe: Observer) -> Local {
         let mut cycle = self.cycle();
-        let (mut solution, mut violation) = settle(&mut cycle, start, first_step_limit, observe);
-        while solution.status.is_optimal()
-            && let Some(mut finer) = cycle.finer()
+        let mut found = settle(&mut cycle, start, first_step_limit, observe);
+        while found.solution.status.is_optimal()
+            && let Some(mut finer) = if found.settled { cycle.finer() } else { cycle.twice_as_fine() }
         {
-            let (mut better, left) = settle(&mut finer, &solution.x, CAUTION, observe);
-            if !better.status.is_optimal() {
+            let mut better = settle(&mut finer, &found.solution.x, CAUTION, observe);
+            if !better.solution.status.is_optimal() {
                 // What does not become an optimum there stays what it is: its receipt tells.
-                solution.iterations += better.iterations;
+                found.solution.iterations += better.solution.iterations;
                 break;
             }
-            better.iterations += solution.iterations;
-            (solution, violation, cycle) = (better, left, finer);
+            better.solution.iterations += found.solution.iterations;
+            (found, cycle) = (better, finer);
         }
-        finish(&mut cycle, solution, violation)
+        finish(&mut cycle, found.solution, found.violation)
     }
 }
 
-/// The optimum near `start`, with constraints imposed between nodes where they dip; and what violation (scaled) is left there.
+/// A solution with constraints imposed between nodes.
+struct Settled {
+    solution: Solution,
+    /// What violation (scaled) is left there.
+    violation: f64,
+    /// Whether the rows between nodes no longer changed.
+    settled: bool,
+}
+
+/// Imposes constraints between nodes where they dip in a solution. Tells what violation (scaled) is there, and by how much rows
+/// that there were have changed: scaled, and where a row's price is high by what that does to the criterion.
+fn look(cycle: &mut Cycle, solution: &Solution) -> Result<(f64, f64), Undefined> {
+    cycle.simulate(&solution.x)?;
+    let found = dips(cycle)?;
+    let multipliers = cycle.dip_multipliers(&solution.inequality_multipliers);
+    let changes = found.impose(cycle)?;
+    let size = solution.objective.abs().max(1.0);
+    let pairs = changes.iter().flatten().zip(multipliers.iter().flatten());
+    let change = pairs.map(|(change, multiplier)| change * (multiplier / size).max(1.0)).fold(0.0, f64::max);
+    Ok((found.violation, change))
+}
+
+/// The optimum near `start`, with constraints imposed between nodes where they dip.
 ///
 /// The rows between nodes are known only at a solution, so it is sought again until they no longer change.
-fn settle(cycle: &mut Cycle, start: &[f64], first_step_limit: f64, observe: Observer) -> (Solution, f64) {
+fn settle(cycle: &mut Cycle, start: &[f64], first_step_limit: f64, observe: Observer) -> Settled {
     let options = options(cycle);
     let first = Options { first_step_limit, ..options.clone() };
     let mut solution = sqp::minimize(cycle, start, &first, observe);
-    let mut settled: Option<(Solution, f64)> = None;
+    let mut last: Option<Settled> = None;
     for round in 0.. {
-        let look = |cycle: &mut Cycle| {
-            cycle.simulate(&solution.x)?;
-            let found = dips(cycle)?;
-            Ok::<_, Undefined>((found.violation, found.impose(cycle)?))
-        };
-        let Ok((violation, change)) = look(cycle) else { break };
+        let Ok((violation, change)) = look(cycle, &solution) else { break };
         if !solution.status.is_optimal() {
             // What was found with nearly these rows is better than nothing: its verdict tells.
-            return settled.unwrap_or((solution, violation));
+            return last.unwrap_or(Settled { solution, violation, settled: true });
         }
-        if (violation <= DENSE && change <= SETTLED) || round == ROUNDS {
-            return (solution, violation);
+        let settled = violation <= DENSE && change <= SETTLED;
+        if settled || round == ROUNDS || (violation <= DENSE && round >= PATIENCE) {
+            return Settled { solution, violation, settled };
         }
         if violation <= DENSE {
-            settled = Some((solution.clone(), violation));
+            last = Some(Settled { solution: solution.clone(), violation, settled });
         }
         let iterations = solution.iterations;
         solution = sqp::minimize(cycle, &solution.x, &options, observe);
         solution.iterations += iterations;
     }
-    (solution, f64::INFINITY)
+    Settled { solution, violation: f64::INFINITY, settled: true }
 }
 
 fn finish(cycle: &mut Cycle, solution: Solution, violation: f64) -> Local {

@@ -44,23 +44,24 @@ struct Dip {
 
 impl Dips {
     /// Imposes the constraints where they dip in the same motion, the last one that `cycle` has simulated. Tells by how much that
-    /// changes a row that is active before or after (scaled).
+    /// changes each row between nodes that there was, per half step (scaled; 0 for rows that hold nothing before or after).
     ///
     /// # Errors
     /// If the equations admit no state at some instant.
-    pub fn impose(&self, cycle: &mut Cycle) -> Result<f64, Undefined> {
-        // Rows whose dip has moved on or risen must not keep the offset that they had.
+    pub fn impose(&self, cycle: &mut Cycle) -> Result<Vec<Vec<f64>>, Undefined> {
         let before = cycle.dip_values();
+        // Rows whose dip has moved on or risen must not keep the offset that they had.
         for phase in 0..cycle.phases() {
             cycle.measure_dips(phase)?;
         }
         for dip in &self.found {
             cycle.impose(dip.phase, dip.constraint, dip.s, dip.value);
         }
-        let after = cycle.dip_values();
-        let changes = before.iter().zip(&after).flat_map(|(before, after)| before.iter().zip(after));
-        let active = changes.filter(|(before, after)| before.min(**after) < ACTIVE);
-        Ok(active.map(|(before, after)| (before - after).abs()).fold(0.0, f64::max))
+        let change = |(before, after): (&f64, &f64)| {
+            if before.min(*after) < ACTIVE { (before - after).abs() } else { 0.0 }
+        };
+        let changes = |(before, after): (&Vec<f64>, &Vec<f64>)| before.iter().zip(after).map(change).collect();
+        Ok(before.iter().zip(&cycle.dip_values()).map(changes).collect())
     }
 }
 

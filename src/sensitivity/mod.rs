@@ -9,8 +9,7 @@ mod lagrangian;
 use crate::constraints::sharing::applies;
 use crate::model::Gait;
 use crate::motion::{Criterion, Motion};
-use crate::optimality::Linearized;
-use crate::verdict::KKT_RESIDUAL;
+use crate::optimality::{KKT_RESIDUAL, Linearized};
 use lagrangian::{LANES, Slopes};
 use serde::{Deserialize, Serialize};
 

@@ -16,6 +16,9 @@ use super::{KktResidual, Options, Problem, Undefined, Values};
 
 /// Inequalities farther from zero than this have no multiplier.
 const NEAR: f64 = 1e-3;
+/// Inequalities nearer than this are met exactly, as far as a solver goes: how far a multiplier's constraint still is from zero
+/// is the complementarity residual's to say.
+const MET: f64 = 1e-8;
 /// Limit of a multiplier in units of max(1, ‖∇f‖∞): where the constraints contradict each other, they give way.
 const LIMIT: f64 = 1e6;
 
@@ -64,7 +67,8 @@ pub fn multipliers<P: Problem>(problem: &mut P, x: &[f64], scale: Vec<f64>) -> R
     }
     for &i in &near {
         view.inequality_row(i, &mut row)?;
-        qp.push(&row, point.values.inequalities[i].max(0.0), false, LIMIT * size);
+        let value = point.values.inequalities[i];
+        qp.push(&row, if value <= MET { 0.0 } else { value }, false, LIMIT * size);
     }
     let mut solver = ActiveSet::new(n, qp.len());
     let step = match solver.solve(&qp) {
