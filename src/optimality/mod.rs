@@ -111,7 +111,7 @@ pub struct Linearized<'a> {
 }
 
 impl<'a> Linearized<'a> {
-    /// On the coarsest mesh that resolves the motion and on which the conditions hold, or the finest.
+    /// On the coarsest mesh that resolves the motion and on which the conditions hold; if there is none, on the coarsest.
     ///
     /// # Errors
     /// If the equations admit no such motion.
@@ -125,17 +125,38 @@ impl<'a> Linearized<'a> {
         motion: &Motion,
     ) -> Result<Linearized<'a>, Undefined> {
         let theta = theta(motion);
-        let mut cycle = Cycle::resolving(gait, criterion, speed, &theta).map_err(|_| Undefined)?;
-        loop {
-            dips(&cycle).and_then(|dips| dips.impose(&mut cycle)).map_err(|_| Undefined)?;
-            let scale = cycle.scale();
-            let multipliers = multipliers(&mut cycle, &theta, scale)?;
-            // A mesh that resolves the motion need not resolve the slopes of a constraint that hardly depends on Θ.
-            let finer = cycle.twice_as_fine().filter(|_| multipliers.kkt.optimality() > KKT_RESIDUAL);
-            let Some(mut finer) = finer else { return Ok(Linearized { cycle, theta, multipliers }) };
-            finer.simulate(&theta).map_err(|_| Undefined)?;
-            cycle = finer;
+        let first = Linearized::on(Cycle::resolving(gait, criterion, speed, &theta).map_err(|_| Undefined)?, &theta)?;
+        // A mesh that resolves the motion need not resolve the slopes of a constraint that hardly depends on Θ.
+        let mut finer = first.finer()?;
+        while let Some(found) = finer {
+            if found.holds() {
+                return Ok(found);
+            }
+            finer = found.finer()?;
         }
+        Ok(first)
+    }
+
+    /// Of a motion that `cycle` has just simulated.
+    fn on(mut cycle: Cycle<'a>, theta: &[f64]) -> Result<Linearized<'a>, Undefined> {
+        dips(&cycle).and_then(|dips| dips.impose(&mut cycle)).map_err(|_| Undefined)?;
+        let scale = cycle.scale();
+        let multipliers = multipliers(&mut cycle, theta, scale)?;
+        Ok(Linearized { cycle, theta: theta.to_vec(), multipliers })
+    }
+
+    fn holds(&self) -> bool {
+        self.multipliers.kkt.optimality() <= KKT_RESIDUAL
+    }
+
+    /// The same on a mesh twice as fine, if the conditions do not hold and there is one.
+    fn finer(&self) -> Result<Option<Linearized<'a>>, Undefined> {
+        let finer = self.cycle.twice_as_fine().filter(|_| !self.holds());
+        let linearize = |mut cycle: Cycle<'a>| {
+            cycle.simulate(&self.theta).map_err(|_| Undefined)?;
+            Linearized::on(cycle, &self.theta)
+        };
+        finer.map(linearize).transpose()
     }
 
     /// Names of limits that are active but have no price: the slightest change may make them hold the optimum, or not.
