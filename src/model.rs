@@ -106,8 +106,10 @@ pub struct Leg {
 pub struct Member {
     pub name: &'static str,
     /// Its own links from the platform down, with the virtual leg's coordinates. The parent of the first is the
-    /// platform (0), of the others the link before (1, 2, …).
+    /// platform (0), of the others the link before (1, 2, …). Their names are theirs alone in the robot.
     pub bodies: Cow<'static, [Body]>,
+    /// Names of its joints from the platform down, theirs alone in the robot.
+    pub joints: Cow<'static, [&'static str]>,
     /// Foot from the joint of the last link, m.
     pub foot: [f64; 3],
 }

@@ -2,9 +2,9 @@
 
 mod common;
 
-use common::{FAMILIES, files, specification};
-use piaffe_codegen::mechanism::{Family, Mechanism, levers, parameters};
-use piaffe_codegen::spec::{parse_gait, parse_robot};
+use common::{FAMILIES, GAITS, files, specification};
+use piaffe_codegen::mechanism::{Family, Lever, Mechanism, levers, parameters};
+use piaffe_codegen::spec::{Gait, RobotFile, parse_gait, parse_robot};
 
 #[test]
 fn slopes_of_masses_and_lengths_are_those_of_unit_robots() {
@@ -13,7 +13,7 @@ fn slopes_of_masses_and_lengths_are_those_of_unit_robots() {
         let family = Family::new(&robot, &gait, parameters(&robot)).unwrap();
         let levers = levers(&robot, &gait);
         for (parameter, slopes) in family.parameters.iter().zip(&family.slopes) {
-            let found = levers.iter().find(|l| l.name == parameter.name);
+            let found = levers.iter().find(|l| l.numbers.contains(&parameter.name));
             for (number, expected) in slopes.iter().enumerate() {
                 let slopes = found.iter().flat_map(|l| &l.slopes);
                 let slope = slopes.filter(|s| s.0 == number).map(|s| s.1).sum::<f64>();
@@ -60,4 +60,101 @@ fn slopes_are_those_of_a_changed_text() {
             assert!(error <= 1e-3 * (slope * by).abs() + 1e-14, "{name} {number}: {before} {after} {slope}");
         }
     }
+}
+
+/// A trot of the A1: its diagonal legs move as one, and the diagonals mirror each other.
+const TROT_OF_A1: &str = r#"
+virtual_legs = [["FL", "RR"], ["FR", "RL"]]
+locked = { FR_hip_joint = 0.0, FL_hip_joint = 0.0, RR_hip_joint = 0.0, RL_hip_joint = 0.0 }
+platform = { moves = ["x", "y"], rotates = "none" }
+unactuated = "leg1.FL_thigh_joint"
+half_steps = "mirrored"
+[limits]
+friction = 1.0
+min_vertical_force = 7.0
+swing_clearance = 0.005
+half_step_duration = [0.05, 2.0]
+"#;
+
+fn robot(key: &str) -> RobotFile {
+    let (_, robot, _) = files(key);
+    parse_robot(&robot.path, &robot.text).unwrap()
+}
+
+/// Changes every lever of a gait by a percent: the gait must remain one of the robot, and slopes tell its numbers.
+fn every_lever_keeps_the_gait(robot: &RobotFile, text: &str) -> Vec<Lever> {
+    let gait = parse_gait("gait.toml", text, robot).unwrap();
+    let numbers = |robot: &RobotFile, gait: &Gait| {
+        let mechanism = Mechanism::new(&robot.robot.locked(&gait.locked).unwrap(), gait);
+        [mechanism.numbers(), mechanism.limiting_numbers()].concat()
+    };
+    let before = numbers(robot, &gait);
+    let levers = levers(&robot.robot, &gait);
+    for lever in &levers {
+        let by = if lever.value == 0.0 { 1e-6 } else { 1e-2 * lever.value };
+        let (other, changed) = lever.moved(&robot.robot, &gait, by);
+        let mut moved = robot.clone();
+        moved.robot = other;
+        let again = parse_gait("gait.toml", text, &moved);
+        assert!(again.is_ok(), "{}: {:?}", lever.name, again.unwrap_err());
+        let largest = before.iter().fold(0.0f64, |most, number| most.max(number.abs()));
+        for (number, (before, after)) in before.iter().zip(numbers(&moved, &changed)).enumerate() {
+            let slope = lever.slopes.iter().filter(|s| s.0 == number).map(|s| s.1).sum::<f64>();
+            // All but the second order.
+            let error = (after - before - slope * by).abs();
+            assert!(error <= 2e-2 * (slope * by).abs() + 1e-12 * largest, "{} {number}: {error}", lever.name);
+        }
+    }
+    levers
+}
+
+#[test]
+fn numbers_that_must_stay_alike_change_together() {
+    for key in GAITS {
+        let (_, _, gait) = files(key);
+        every_lever_keeps_the_gait(&robot(key), &gait.text);
+    }
+    let bound = every_lever_keeps_the_gait(&robot("a1/bound"), &files("a1/bound").2.text);
+    let trot = every_lever_keeps_the_gait(&robot("a1/bound"), TROT_OF_A1);
+    let named = |levers: &[Lever], name: &str| levers.iter().any(|l| l.name == name);
+    // A bound's hind legs are alike, and its fore legs; a trot's are all of one build.
+    for name in ["links.{RR,RL}_calf.length", "links.{FR,FL}_calf.length", "joints.{RR,RL}_calf_joint.range.lower"] {
+        assert!(named(&bound, name) && !named(&trot, name), "{name}");
+    }
+    for name in [
+        "links.{FR,FL,RR,RL}_calf.length",
+        "links.{FR,FL,RR,RL}_thigh.com.x",
+        "legs.{FR,FL,RR,RL}.mount.x",
+        "actuators.motor.max_torque",
+    ] {
+        assert!(named(&trot, name), "{name}: {:?}", trot.iter().map(|l| &l.name).collect::<Vec<_>>());
+    }
+    assert!(named(&every_lever_keeps_the_gait(&robot("trot"), &files("trot").2.text), "links.shin.length"));
+}
+
+/// Mirror images turn the other way: where the platform rolls, a stop of a hip on the right is the other one on the left.
+#[test]
+fn stops_of_mirror_images_change_against_each_other() {
+    let mut text = files("a1/bound").1.text;
+    // In the middle, where its mirror image is.
+    text = text.replace("com = [0.0, -0.000499916680553, -0.00409931678054]", "com = [0.0, -0.0005, 0.0]");
+    let robot = parse_robot("robot.toml", &text).unwrap();
+    let gait = r#"
+virtual_legs = [["FR", "RR"], ["FL", "RL"]]
+platform = { moves = ["x", "y", "z"], rotates = "roll" }
+unactuated = "platform"
+half_steps = "mirrored"
+[limits]
+friction = 1.0
+min_vertical_force = 7.0
+swing_clearance = 0.005
+half_step_duration = [0.05, 2.0]
+"#;
+    let levers = every_lever_keeps_the_gait(&robot, gait);
+    let stop = levers.iter().find(|l| l.numbers.iter().any(|n| n == "joints.FR_hip_joint.range.lower")).unwrap();
+    let mut numbers: Vec<&str> = stop.numbers.iter().map(String::as_str).collect();
+    numbers.sort_unstable();
+    let upper = ["FL", "RL"].map(|leg| format!("joints.{leg}_hip_joint.range.upper"));
+    let lower = ["FR", "RR"].map(|leg| format!("joints.{leg}_hip_joint.range.lower"));
+    assert_eq!(numbers, [&upper[0], &lower[0], &upper[1], &lower[1]]);
 }

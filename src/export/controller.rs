@@ -1,6 +1,6 @@
 //! A walk as the polynomials that a controller follows (eq. 15).
 
-use super::table::coordinates;
+use super::table::{coordinates, real_joints};
 use crate::model::HalfSteps;
 use crate::model::{Description, Gait};
 use crate::motion::{HalfStep, Motion};
@@ -36,6 +36,8 @@ pub struct Program {
 #[derive(Clone, Debug, Serialize)]
 pub struct Polynomial {
     pub name: String,
+    /// The real joints that follow it; none follows the platform's rotation.
+    pub joints: Vec<String>,
     pub coefficients: Vec<f64>,
 }
 
@@ -43,6 +45,8 @@ pub struct Polynomial {
 #[derive(Clone, Debug, Serialize)]
 pub struct Free {
     pub name: String,
+    /// The real joints that go with it.
+    pub joints: Vec<String>,
     pub initial: f64,
     pub initial_rate: f64,
     pub r#final: f64,
@@ -68,6 +72,7 @@ pub fn controller(gait: &dyn Gait, motion: &Motion) -> Controller {
 
 fn program(d: &Description, h: &HalfStep, exchanged: bool, stance: &[String]) -> Program {
     let names = coordinates(d);
+    let joints = |k: usize| real_joints(d).filter(|(of, _)| *of == k).map(|(_, name)| name.into()).collect();
     // Where the legs have exchanged their roles, a coordinate does what its counterpart did.
     let role = |k: usize| if exchanged { d.swapped(k) } else { (k, 1.0) };
     let basis = Basis::new(d.polynomial_order);
@@ -75,7 +80,7 @@ fn program(d: &Description, h: &HalfStep, exchanged: bool, stance: &[String]) ->
     for j in 0..d.prescribed() {
         let (k, sign) = role(d.prescribed_index(j));
         let coefficients = coefficients(&basis, h, j).iter().map(|c| sign * c + 0.0).collect();
-        polynomials.push((k, Polynomial { name: names[k].clone(), coefficients }));
+        polynomials.push((k, Polynomial { name: names[k].clone(), joints: joints(k), coefficients }));
     }
     polynomials.sort_by_key(|(k, _)| *k);
     let (beta, sign) = role(d.unactuated);
@@ -85,6 +90,7 @@ fn program(d: &Description, h: &HalfStep, exchanged: bool, stance: &[String]) ->
         coordinates: polynomials.into_iter().map(|(_, p)| p).collect(),
         unactuated: Free {
             name: names[beta].clone(),
+            joints: joints(beta),
             initial: sign * h.beta_initial,
             initial_rate: sign * h.betad_initial,
             r#final: sign * h.beta_final,

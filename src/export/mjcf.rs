@@ -37,11 +37,10 @@ pub fn mjcf(walk: &Walk) -> String {
             platform(x, d);
         });
         x.element("actuator", &[], |x| {
-            each_joint(d, |leg, name, joint, members| {
+            each_joint(d, |name, joint, members| {
                 let most = d.joints[joint].max_torque / members;
-                let name = format!("{leg}_{name}");
                 let range = numbers(&[-most, most]);
-                x.leaf("motor", &[("name", name.clone()), ("joint", name), ("ctrlrange", range)]);
+                x.leaf("motor", &[("name", name.into()), ("joint", name.into()), ("ctrlrange", range)]);
             });
         });
         x.element("keyframe", &[], |x| x.leaf("key", &start(d, &walk.moments[0])));
@@ -49,12 +48,12 @@ pub fn mjcf(walk: &Walk) -> String {
     xml.finish()
 }
 
-/// Calls with each real leg's joints: leg, joint's name without the virtual leg's number, joint, legs that share it.
-fn each_joint(d: &Description, mut call: impl FnMut(&str, &str, usize, f64)) {
+/// Calls with each real joint: its name, the virtual leg's joint, how many share what that does.
+fn each_joint(d: &Description, mut call: impl FnMut(&str, usize, f64)) {
     for leg in &d.legs {
         for member in leg.members.iter() {
-            for joint in leg.first_joint..leg.end_joint {
-                call(member.name, super::joint_name(d, joint), joint, leg.members.len() as f64);
+            for (name, joint) in member.joints.iter().zip(leg.first_joint..) {
+                call(name, joint, leg.members.len() as f64);
             }
         }
     }
@@ -82,23 +81,22 @@ fn platform(x: &mut Xml, d: &Description) {
         x.leaf("geom", &[("type", "box".into()), ("size", numbers(&[half(0), half(1), 0.02]))]);
         for leg in &d.legs {
             for member in leg.members.iter() {
-                limb(x, d, leg, member, &member.bodies);
+                limb(x, d, leg, member, &member.bodies, &member.joints);
             }
         }
     });
 }
 
 /// A link, with the rest of the leg inside.
-fn limb(x: &mut Xml, d: &Description, leg: &Leg, member: &Member, bodies: &[Body]) {
-    let Some((body, rest)) = bodies.split_first() else { return };
+fn limb(x: &mut Xml, d: &Description, leg: &Leg, member: &Member, bodies: &[Body], joints: &[&str]) {
+    let (Some((body, rest)), Some((name, names))) = (bodies.split_first(), joints.split_first()) else { return };
     let end = frame::vector(rest.first().map_or(member.foot, |next| next.offset));
     let joint = body.coordinate.unwrap_or(leg.first_joint);
     let limits = &d.joints[joint];
     let share = leg.members.len() as f64;
-    let name = format!("{}_{}", member.name, body.name);
-    x.element("body", &[("name", name), ("pos", numbers(&frame::vector(body.offset)))], |x| {
+    x.element("body", &[("name", body.name.into()), ("pos", numbers(&frame::vector(body.offset)))], |x| {
         let attributes = [
-            ("name", format!("{}_{}", member.name, super::joint_name(d, joint))),
+            ("name", name.to_string()),
             ("axis", numbers(&frame::axis(body.axis))),
             ("range", numbers(&limits.range)),
             ("armature", (limits.rotor_inertia / share).to_string()),
@@ -108,7 +106,7 @@ fn limb(x: &mut Xml, d: &Description, leg: &Leg, member: &Member, bodies: &[Body
         let bone = numbers(&[[0.0; 3], end].concat());
         x.leaf("geom", &[("type", "capsule".into()), ("fromto", bone), ("size", "0.008".into())]);
         if rest.is_empty() {
-            x.leaf("site", &[("name", format!("{}_foot", member.name)), ("pos", numbers(&end))]);
+            x.leaf("site", &[("name", super::foot_name(d, member)), ("pos", numbers(&end))]);
             let foot = [
                 ("type", "sphere".into()),
                 ("size", FOOT.to_string()),
@@ -119,7 +117,7 @@ fn limb(x: &mut Xml, d: &Description, leg: &Leg, member: &Member, bodies: &[Body
             ];
             x.leaf("geom", &foot);
         }
-        limb(x, d, leg, member, rest);
+        limb(x, d, leg, member, rest, names);
     });
 }
 
@@ -139,7 +137,7 @@ fn start(d: &Description, m: &Moment) -> [(&'static str, String); 3] {
     position.extend(axis.map(|a| sin * a));
     let mut velocity = frame::vector(m.platform[1]).to_vec();
     velocity.extend(axis.map(|a| rate * a));
-    each_joint(d, |_, _, joint, _| {
+    each_joint(d, |_, joint, _| {
         position.push(m.q[joint]);
         velocity.push(m.qd[joint]);
     });

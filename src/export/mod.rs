@@ -11,11 +11,14 @@ pub mod table;
 pub mod urdf;
 mod xml;
 
-use crate::model::Description;
+use crate::model::{Description, Member};
 
-/// A joint's name in its leg, without the number of the virtual leg.
-fn joint_name(d: &Description, joint: usize) -> &'static str {
-    let leg = usize::from(joint >= d.legs[1].first_joint) + 1;
-    let name = d.joints[joint].name;
-    name.strip_suffix(&leg.to_string()).unwrap_or(name)
+/// The name of a real leg's foot: no link has it.
+fn foot_name(d: &Description, member: &Member) -> String {
+    let mut name = format!("{}_foot", member.name);
+    let links = || d.legs.iter().flat_map(|leg| leg.members.iter()).flat_map(|m| m.bodies.iter());
+    while d.bodies[0].name == name || links().any(|link| link.name == name) {
+        name.push('_');
+    }
+    name
 }

@@ -1,6 +1,6 @@
 //! A walk as arrays for numpy: a zip archive of `.npy` files, version 1.0 each.
 
-use super::table::{coordinates, legs};
+use super::table::{coordinates, legs, real_joints};
 use crate::walk::{Moment, Walk};
 use std::io::{Cursor, Write};
 use zip::write::SimpleFileOptions;
@@ -8,7 +8,8 @@ use zip::{CompressionMethod, ZipWriter};
 
 /// Arrays by name, over the moments: `t` (n), `half_step`, `stance` (n; 1 or 2), `p`, `pd`, `pdd` (n × 3: the platform's
 /// mass centre), `q`, `qd`, `qdd` (n × coordinates), `torque` (n × joints), `force` (n × 3), `feet` (n × legs × 3); and
-/// the names `coordinates`, `joints`, `legs`. SI units, rad.
+/// the names `coordinates`, `joints` (of the virtual legs), `legs`, `real_joints`, and of each of the last the index of the coordinate
+/// that it follows (`real_joint_of`). SI units, rad.
 ///
 /// # Errors
 /// None in practice: the archive is made in memory.
@@ -39,6 +40,10 @@ pub fn npz(walk: &Walk) -> std::io::Result<Vec<u8>> {
     archive.words("coordinates", &of.iter().map(String::as_str).collect::<Vec<_>>())?;
     archive.words("joints", &d.joints.iter().map(|j| j.name).collect::<Vec<_>>())?;
     archive.words("legs", &names)?;
+    let (of, real): (Vec<usize>, Vec<&str>) = real_joints(d).unzip();
+    archive.words("real_joints", &real)?;
+    let of: Vec<u8> = of.into_iter().flat_map(|k| (k as f64).to_le_bytes()).collect();
+    archive.put("real_joint_of", "<f8", &[real.len()], &of)?;
     Ok(archive.zip.finish()?.into_inner())
 }
 

@@ -14,6 +14,12 @@ pub fn coordinates(d: &Description) -> Vec<String> {
     names
 }
 
+/// The real joints: the coordinate that each follows, and its name, which every export of the robot has.
+pub fn real_joints(d: &Description) -> impl Iterator<Item = (usize, &'static str)> + '_ {
+    let members = d.legs.iter().flat_map(|leg| leg.members.iter().map(move |member| (leg, member)));
+    members.flat_map(|(leg, member)| (leg.first_joint..).zip(member.joints.iter().copied()))
+}
+
 /// The real legs: virtual leg, member, name.
 pub fn legs(d: &Description) -> impl Iterator<Item = (usize, usize, &'static str)> + '_ {
     let of = |leg: usize| d.legs[leg].members.iter().enumerate().map(move |(k, m)| (leg, k, m.name));

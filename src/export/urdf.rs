@@ -21,13 +21,12 @@ pub fn urdf(d: &Description) -> String {
 
 fn limb(x: &mut Xml, d: &Description, leg: &Leg, member: &Member) {
     let mut parent = d.bodies[0].name.to_string();
-    for body in member.bodies.iter() {
-        let child = format!("{}_{}", member.name, body.name);
+    for (body, name) in member.bodies.iter().zip(member.joints.iter()) {
+        let child = body.name.to_string();
         link(x, child.clone(), Some(body));
         let joint = body.coordinate.unwrap_or(leg.first_joint);
         let limits = &d.joints[joint];
-        let name = format!("{}_{}", member.name, super::joint_name(d, joint));
-        x.element("joint", &[("name", name), ("type", "revolute".into())], |x| {
+        x.element("joint", &[("name", name.to_string()), ("type", "revolute".into())], |x| {
             ends(x, &parent, &child, body.offset);
             x.leaf("axis", &[("xyz", numbers(&frame::axis(body.axis)))]);
             let limit = [
@@ -40,7 +39,7 @@ fn limb(x: &mut Xml, d: &Description, leg: &Leg, member: &Member) {
         });
         parent = child;
     }
-    let foot = format!("{}_foot", member.name);
+    let foot = super::foot_name(d, member);
     link(x, foot.clone(), None);
     let name = format!("{foot}_fixed");
     x.element("joint", &[("name", name), ("type", "fixed".into())], |x| ends(x, &parent, &foot, member.foot));

@@ -2,12 +2,18 @@
 
 use super::{Body, Description};
 
-/// A number of the specification: something that can be changed on the robot, or in what is asked of it.
+/// Numbers of the specification that change together: something that can be changed on the robot, or in what is asked of it.
+///
+/// Legs that the gait moves as one or that mirror each other must stay alike, so that what they have in the same place changes by the same
+/// share.
 #[derive(Clone, Copy, Debug)]
 pub struct Lever {
-    /// Where it stands in the specification, such as `links.thigh.mass`.
+    /// Where they stand in the specification, what differs in braces: `links.{left_shin,right_shin}.mass`.
     pub name: &'static str,
+    /// Where each stands, such as `links.left_shin.mass`.
+    pub numbers: &'static [&'static str],
     pub unit: &'static str,
+    /// Of the first that is not zero.
     pub value: f64,
     /// Which of [`Description::numbers`] change with it, and by how much per unit.
     pub slopes: &'static [(usize, f64)],

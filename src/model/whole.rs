@@ -29,7 +29,7 @@ pub struct Description {
 /// A joint of a real leg.
 #[derive(Clone, Copy, Debug)]
 pub struct Joint {
-    /// The leg's name and the joint's.
+    /// Its own in the robot, as [`Member::joints`](super::Member::joints) has it.
     pub name: &'static str,
     /// Seen at the joint, kg·m².
     pub rotor_inertia: f64,

@@ -14,7 +14,7 @@ pub fn section(r: &GaitResult) -> Markup {
     html! {
         div.receipt {
             h3 { "What to change" }
-            p { "How the least " (r.criterion.name()) " moves with every number of the specification, as the motion adapts. The elasticity is in percent of the criterion per percent of the number; where it is negative, a larger number, farther from zero, is better." }
+            p { "How the least " (r.criterion.name()) " moves with every number of the specification, as the motion adapts. Numbers that must stay alike for the gait (in braces) change together, by the same share. The elasticity is in percent of the criterion per percent of the number; where it is negative, a larger number, farther from zero, is better." }
             div.scroll { table {
                 thead { tr { th { "number" } th.n { "value" } th.n { "elasticity" } th.n { "slope" } } }
                 tbody { @for s in effective.iter().take(SHOWN) { (row(s, unit)) } }

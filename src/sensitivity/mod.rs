@@ -31,12 +31,16 @@ impl Sensitivities {
     }
 }
 
-/// The slope of the least criterion in a number.
+/// The slope of the least criterion in a number, or in those that must change together.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sensitivity {
-    /// Its name in the specification, or `speed`.
+    /// Its name in the specification, or `speed`; of several, what differs between their names in braces.
     pub parameter: String,
+    /// Each of them by its name.
+    #[serde(default)]
+    pub numbers: Vec<String>,
     pub unit: String,
+    /// Of the first that is not zero.
     pub value: f64,
     /// dC*/dp, the criterion's unit per the parameter's.
     pub slope: f64,
@@ -60,17 +64,18 @@ pub fn sensitivities(gait: &dyn Gait, criterion: Criterion, speed: f64, motion: 
     }
     let slopes = Slopes::new(&linearized, motion);
     let cost = linearized.multipliers.values.objective;
-    let entry = |parameter: &str, unit: &str, value: f64, slope: f64| Sensitivity {
+    let entry = |parameter: &str, numbers: &[&str], unit: &str, value: f64, slope: f64| Sensitivity {
         parameter: parameter.into(),
+        numbers: numbers.iter().map(ToString::to_string).collect(),
         unit: unit.into(),
         value,
         slope,
         elasticity: slope * value / cost,
     };
-    let mut list = vec![entry("speed", "m/s", speed, slopes.in_speed())];
+    let mut list = vec![entry("speed", &["speed"], "m/s", speed, slopes.in_speed())];
     for chunk in levers.chunks(LANES) {
         let found = slopes.along(chunk)?;
-        list.extend(chunk.iter().zip(found).map(|(l, slope)| entry(l.name, l.unit, l.value, slope)));
+        list.extend(chunk.iter().zip(found).map(|(l, slope)| entry(l.name, l.numbers, l.unit, l.value, slope)));
     }
     list.sort_by(|a, b| b.elasticity.abs().total_cmp(&a.elasticity.abs()));
     Some(Sensitivities { slopes: list, one_sided: linearized.unpriced() })

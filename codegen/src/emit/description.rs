@@ -97,6 +97,7 @@ fn member(m: &Member, runtime: &str) -> Layout {
         [
             ("name", Layout::value(&m.name)),
             ("bodies", borrowed(m.bodies.iter().map(|b| body(b, runtime)))),
+            ("joints", borrowed(m.joints.iter().map(Layout::value))),
             ("foot", Layout::floats(m.foot)),
         ],
     )

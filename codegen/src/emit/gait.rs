@@ -98,13 +98,14 @@ pub(super) fn getter(name: &str, ty: &str, value: Layout, out: &mut String) {
     line(out, "}", 1);
 }
 
-/// A number of the specification as a value of the runtime's type.
+/// Numbers of the specification that change together, as a value of the runtime's type.
 fn lever(lever: &Lever, runtime: &str) -> Layout {
-    let Lever { name, unit, value, slopes } = lever;
+    let Lever { name, numbers, unit, value, slopes } = lever;
     Layout::record(
         format!("{runtime}::Lever"),
         [
             ("name", Layout::value(name)),
+            ("numbers", Layout::list("&[", numbers.iter().map(Layout::value), "]")),
             ("unit", Layout::value(unit)),
             ("value", Layout::float(*value)),
             ("slopes", Layout::list("&[", slopes.iter().map(Layout::value), "]")),

@@ -1,5 +1,9 @@
-//! What can be changed on the robot: every number of a specification under its name there, and how the numbers of a
-//! gait's mechanism follow from it.
+//! What can be changed on the robot: the numbers of a specification under their names there, and how the numbers of a gait's
+//! mechanism follow from them.
+//!
+//! Legs that a gait moves as one, or that mirror each other in it, must stay alike: a calf that is longer than the other three
+//! makes no robot that can walk so. So the numbers that these legs have in the same place are one lever ([`Lever::numbers`]), which
+//! changes all of them by the same share; numbers that are zero, by as much.
 //!
 //! Where virtual legs share their links the reduction is affine in the robot's numbers, but a gear enters squared,
 //! and links that a locked joint joins have a common mass centre. So slopes are taken at the specification's values,
@@ -7,15 +11,18 @@
 
 use super::parameter::{Place, Sign};
 use super::{Actuated, Mechanism, parameter};
-use crate::spec::{Gait, Limits, Robot};
+use crate::spec::{Axis, Gait, HalfSteps, Leg, Limits, Robot, Rotation};
 use std::fmt::Arguments;
 
-/// A number of the specification.
+/// Numbers of the specification that change together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lever {
-    /// Where it stands, keys joined by dots.
+    /// Where they stand, keys joined by dots, and what differs between them in braces: `links.{left_shin,right_shin}.mass`.
     pub name: String,
+    /// Each of them.
+    pub numbers: Vec<String>,
     pub unit: &'static str,
+    /// Of the first that is not zero.
     pub value: f64,
     /// Which of the mechanism's numbers depend on it ([`Mechanism::numbers`], then [`Mechanism::limiting_numbers`]), and how much.
     pub slopes: Vec<(usize, f64)>,
@@ -24,46 +31,176 @@ pub struct Lever {
 /// Step of the differences, as a share of the value.
 const STEP: f64 = 1.0 / 1024.0;
 
-/// All numbers that a gait depends on. Both must have passed validation.
+/// A number of the specification; mounts that are as far out are one.
+struct Number {
+    names: Vec<String>,
+    unit: &'static str,
+    value: f64,
+}
+
+/// All levers of a gait on which its mechanism depends. Both must have passed validation.
 pub fn levers(robot: &Robot, gait: &Gait) -> Vec<Lever> {
-    let mut named: Vec<(String, &'static str, f64)> = Vec::new();
-    // What stands at each place, as a number of the list.
-    let mut at = Vec::new();
-    places(&mut robot.clone(), &mut gait.limits.clone(), |place| {
-        let name = place.name.to_string();
-        let known = named.iter().position(|known| known.0 == name);
-        at.push(known.unwrap_or(named.len()));
-        if known.is_none() {
-            named.push((name, place.unit, place.value()));
-        }
-    });
-    let (mut robot, mut gait) = (robot.clone(), gait.clone());
-    let lever = |(k, (name, unit, value)): (usize, (String, &'static str, f64))| {
-        let set = |robot: &mut Robot, gait: &mut Gait, value: f64| {
-            let mut at = at.iter();
-            places(robot, &mut gait.limits, |place| {
-                if at.next() == Some(&k) {
-                    place.set(value);
-                }
-            });
-        };
-        let mut numbers = |changed: f64| {
-            set(&mut robot, &mut gait, changed);
+    let numbers = numbers(robot, gait);
+    let lever = |group: Vec<&Number>| {
+        let first = group.iter().find(|number| number.value != 0.0).or(group.first())?;
+        let names: Vec<String> = group.iter().flat_map(|number| number.names.iter().cloned()).collect();
+        let mut lever =
+            Lever { name: braced(&names), numbers: names, unit: first.unit, value: first.value, slopes: Vec::new() };
+        lever.slopes = lever.slopes(robot, gait)?;
+        (!lever.slopes.is_empty()).then_some(lever)
+    };
+    tied(&numbers, robot, gait).into_iter().filter_map(lever).collect()
+}
+
+impl Lever {
+    /// Robot and gait with a value that is greater by `by`.
+    pub fn moved(&self, robot: &Robot, gait: &Gait, by: f64) -> (Robot, Gait) {
+        let sides = Sides::new(robot);
+        let (mut robot, mut gait) = (robot.clone(), gait.clone());
+        places(&mut robot, &mut gait.limits, |place| {
+            let own = place.own.to_string();
+            if self.numbers.contains(&own) {
+                let value = place.value();
+                let change = if self.value == 0.0 {
+                    by * sides.of(&own) * sides.of(&self.numbers[0])
+                } else {
+                    by * value / self.value
+                };
+                place.set(value + change);
+            }
+        });
+        (robot, gait)
+    }
+
+    fn slopes(&self, robot: &Robot, gait: &Gait) -> Option<Vec<(usize, f64)>> {
+        let numbers = |by: f64| {
+            let (robot, gait) = self.moved(robot, gait, by);
             let mechanism = robot.locked(&gait.locked).map(|robot| Mechanism::new(&robot, &gait));
-            set(&mut robot, &mut gait, value);
             mechanism.ok().map(|m| [m.numbers(), m.limiting_numbers()].concat())
         };
-        let size = if value == 0.0 { 1.0 } else { value.abs() };
-        let mut difference = |h: f64| -> Option<Vec<f64>> {
-            let (above, below) = (numbers(value + h)?, numbers(value - h)?);
+        let size = if self.value == 0.0 { 1.0 } else { self.value.abs() };
+        let difference = |h: f64| -> Option<Vec<f64>> {
+            let (above, below) = (numbers(h)?, numbers(-h)?);
             Some(above.iter().zip(&below).map(|(a, b)| (a - b) / (2.0 * h)).collect())
         };
         let (wide, narrow) = (difference(size * STEP)?, difference(size * STEP / 2.0)?);
         let slope = |(wide, narrow): (&f64, &f64)| rounded((4.0 * narrow - wide) / 3.0);
-        let slopes = wide.iter().zip(&narrow).map(slope).enumerate().filter(|(_, slope)| *slope != 0.0).collect();
-        Some(Lever { name, unit, value, slopes })
+        Some(wide.iter().zip(&narrow).map(slope).enumerate().filter(|(_, slope)| *slope != 0.0).collect())
+    }
+}
+
+/// All numbers of a specification.
+fn numbers(robot: &Robot, gait: &Gait) -> Vec<Number> {
+    let mut named: Vec<(String, Number)> = Vec::new();
+    places(&mut robot.clone(), &mut gait.limits.clone(), |place| {
+        let (name, own) = (place.name.to_string(), place.own.to_string());
+        match named.iter_mut().find(|known| known.0 == name) {
+            None => named.push((name, Number { names: vec![own], unit: place.unit, value: place.value() })),
+            Some((_, number)) if !number.names.contains(&own) => number.names.push(own),
+            Some(_) => {}
+        }
+    });
+    named.into_iter().map(|(_, number)| number).collect()
+}
+
+/// The numbers in groups that stay alike, in the order of their first ones.
+fn tied<'n>(numbers: &'n [Number], robot: &Robot, gait: &Gait) -> Vec<Vec<&'n Number>> {
+    let mut group: Vec<usize> = (0..numbers.len()).collect();
+    let find = |name: &str| numbers.iter().position(|number| number.names.iter().any(|own| own == name));
+    let mut tie = |a: &str, b: &str| {
+        if let (Some(a), Some(b)) = (find(a), find(b)) {
+            let (first, second) = (group[a].min(group[b]), group[a].max(group[b]));
+            group.iter_mut().filter(|of| **of == second).for_each(|of| *of = first);
+        }
     };
-    named.into_iter().enumerate().filter_map(lever).filter(|lever| !lever.slopes.is_empty()).collect()
+    let mut tie_tables = |a: String, b: String| {
+        for number in numbers {
+            for rest in number.names.iter().filter_map(|name| name.strip_prefix(a.as_str())) {
+                tie(&format!("{a}{rest}"), &format!("{b}{rest}"));
+            }
+        }
+    };
+    let mirrored = gait.half_steps == HalfSteps::Mirrored;
+    let sets = if mirrored { vec![gait.virtual_legs.concat()] } else { gait.virtual_legs.to_vec() };
+    let mut crossed = Vec::new();
+    for set in &sets {
+        for other in &set[1..] {
+            let (a, b) = (&robot.legs[set[0]], &robot.legs[*other]);
+            tie_tables(format!("legs.{}.", a.name), format!("legs.{}.", b.name));
+            if a.chain.len() != b.chain.len() {
+                // Joints that differ are locked; what hangs on them stands in other places.
+                continue;
+            }
+            for (s, t) in a.chain.iter().zip(&b.chain) {
+                tie_tables(format!("links.{}.", s.link.name), format!("links.{}.", t.link.name));
+                let motors = [s, t].map(|segment| format!("actuators.{}.", segment.joint.actuator.name));
+                let [motor, counterpart] = motors;
+                tie_tables(motor, counterpart);
+                let across = gait.virtual_legs[0].contains(&set[0]) != gait.virtual_legs[0].contains(other);
+                if gait.rotation == Rotation::Roll && across && s.joint.axis != Axis::Pitch {
+                    crossed.push((s.joint.name.clone(), t.joint.name.clone()));
+                } else {
+                    tie_tables(format!("joints.{}.", s.joint.name), format!("joints.{}.", t.joint.name));
+                }
+            }
+        }
+    }
+    for (a, b) in crossed {
+        // A mirror image turns the other way.
+        tie(&format!("joints.{a}.range.lower"), &format!("joints.{b}.range.upper"));
+        tie(&format!("joints.{a}.range.upper"), &format!("joints.{b}.range.lower"));
+    }
+    if mirrored && gait.rotation == Rotation::Roll {
+        // The hips are mirror images about the mass centre.
+        let centre = format!("links.{}.com.z", robot.platform.name);
+        robot.legs.iter().for_each(|leg| tie(&centre, &format!("legs.{}.mount.z", leg.name)));
+    }
+    let members = |k: usize| numbers.iter().zip(&group).filter(move |(_, of)| **of == k).map(|(number, _)| number);
+    (0..numbers.len()).map(|k| members(k).collect()).filter(|group: &Vec<_>| !group.is_empty()).collect()
+}
+
+/// On which side of the robot a number's leg is, so that of numbers that are zero mirror images stay so.
+struct Sides(Vec<(String, f64)>);
+
+impl Sides {
+    fn new(robot: &Robot) -> Sides {
+        let of_leg = |leg: &Leg| {
+            let side = if leg.mount[2] < 0.0 { -1.0 } else { 1.0 };
+            let links = leg.chain.iter().map(|segment| format!("links.{}.", segment.link.name));
+            let joints = leg.chain.iter().filter(|segment| segment.joint.axis != Axis::Pitch);
+            let joints = joints.map(|segment| format!("joints.{}.", segment.joint.name));
+            let tables = links.chain(joints).chain([format!("legs.{}.", leg.name)]);
+            tables.map(|table| (table, side)).collect::<Vec<_>>()
+        };
+        Sides(robot.legs.iter().flat_map(of_leg).collect())
+    }
+
+    /// −1 for what is on the left and changes its sign with the side: places across, and stops of joints that do not pitch.
+    fn of(&self, name: &str) -> f64 {
+        let changes = name.ends_with(".z") || name.starts_with("joints.");
+        let table = self.0.iter().find(|(table, _)| name.starts_with(table.as_str()));
+        table.filter(|_| changes).map_or(1.0, |(_, side)| *side)
+    }
+}
+
+/// Names as one: what differs in braces, between dots or underscores.
+fn braced(names: &[String]) -> String {
+    let [first, others @ ..] = names else { return String::new() };
+    let bounded = |text: &str| text.rfind(['.', '_']).map_or(0, |at| at + 1);
+    let common = |a: &str, b: &str| a.bytes().zip(b.bytes()).take_while(|(a, b)| a == b).count();
+    let prefix = others.iter().fold(first.len(), |length, name| length.min(common(first, name)));
+    if others.is_empty() || prefix == first.len() {
+        return first.clone();
+    }
+    let prefix = bounded(&first[..prefix]);
+    let backward = |name: &str| name[prefix..].bytes().rev().collect::<Vec<_>>();
+    let ends: Vec<Vec<u8>> = names.iter().map(|name| backward(name)).collect();
+    let same = |other: &Vec<u8>| ends[0].iter().zip(other).take_while(|(a, b)| a == b).count();
+    let suffix = ends[1..].iter().fold(ends[0].len(), |length, end| length.min(same(end)));
+    let suffix = &first[first.len() - suffix..];
+    let suffix = suffix.find(['.', '_']).map_or("", |at| &suffix[at..]);
+    let middles: Vec<&str> = names.iter().map(|name| &name[prefix..name.len() - suffix.len()]).collect();
+    format!("{}{{{}}}{suffix}", &first[..prefix], middles.join(","))
 }
 
 /// To the digits that differences can give; what cancels to rounding is zero.
@@ -90,7 +227,7 @@ impl Mechanism {
 fn places(robot: &mut Robot, limits: &mut Limits, mut visit: impl FnMut(Place)) {
     parameter::places(robot, &mut visit);
     let mut add = |name: Arguments, unit, number: &mut f64| {
-        visit(Place { name, unit, sign: Sign::Any, negative: false, number });
+        visit(Place { name, own: name, unit, sign: Sign::Any, negative: false, number });
     };
     for segment in robot.legs.iter_mut().flat_map(|leg| &mut leg.chain) {
         let joint = &mut segment.joint;

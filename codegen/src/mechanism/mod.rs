@@ -5,6 +5,7 @@
 
 mod family;
 mod lever;
+mod names;
 mod parameter;
 mod whole;
 
@@ -82,8 +83,11 @@ pub struct VirtualLeg {
 #[derive(Clone, Debug)]
 pub struct Member {
     pub name: String,
-    /// From the platform down. The parent of the first is the platform, of the others the link before.
+    /// From the platform down, under the names that are theirs alone. The parent of the first is the platform, of the others the
+    /// link before.
     pub bodies: Vec<Body>,
+    /// Names of its joints, theirs alone.
+    pub joints: Vec<String>,
     /// Foot from the last joint, m.
     pub foot: [f64; 3],
 }
@@ -94,13 +98,15 @@ impl Mechanism {
     pub fn new(robot: &Robot, gait: &Gait) -> Mechanism {
         let mut bodies = vec![Body::platform(robot)];
         let mut joints = Vec::new();
+        let (link_names, joint_names) = (names::links(robot), names::joints(robot));
         let legs = [0, 1].map(|k| {
             let from_centre = |mount: &[f64; 3]| [0, 1, 2].map(|axis| mount[axis] - robot.platform.com[axis]);
             let (first, body) = (joints.len(), bodies.len());
             let members = gait.virtual_legs[k].iter().map(|i| {
                 let leg = &robot.legs[*i];
-                let (links, foot) = chain(leg, from_centre(&leg.mount), 1, first);
-                Member { name: leg.name.clone(), bodies: links, foot }
+                let (mut links, foot) = chain(leg, from_centre(&leg.mount), 1, first);
+                links.iter_mut().zip(&link_names[*i]).for_each(|(link, name)| link.name.clone_from(name));
+                Member { name: leg.name.clone(), bodies: links, joints: joint_names[*i].clone(), foot }
             });
             let members = members.collect();
             let leg = robot.virtual_leg(&gait.virtual_legs[k]);

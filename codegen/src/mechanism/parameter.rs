@@ -30,6 +30,8 @@ pub enum Sign {
 /// A place in the robot's description that holds `±` a parameter. Most visitors need no name, so it is not written out.
 pub struct Place<'r> {
     pub name: Arguments<'r>,
+    /// Where it stands itself, if the number is called by another place.
+    pub own: Arguments<'r>,
     pub unit: &'static str,
     pub sign: Sign,
     /// The parameter is minus what stands there.
@@ -37,7 +39,11 @@ pub struct Place<'r> {
     pub number: &'r mut f64,
 }
 
-impl Place<'_> {
+impl<'r> Place<'r> {
+    fn new(name: Arguments<'r>, unit: &'static str, sign: Sign, negative: bool, number: &'r mut f64) -> Place<'r> {
+        Place { name, own: name, unit, sign, negative, number }
+    }
+
     pub fn value(&self) -> f64 {
         if self.negative { -*self.number } else { *self.number }
     }
@@ -90,62 +96,57 @@ pub fn with(robot: &Robot, value: impl Fn(&str) -> Option<f64>) -> Robot {
 pub fn places(robot: &mut Robot, mut visit: impl FnMut(Place)) {
     let names: Vec<String> = robot.legs.iter().map(|leg| leg.name.clone()).collect();
     let mounts: Vec<_> = robot.legs.iter().map(|leg| [0, 1, 2].map(|k| shared_mount(&robot.legs, leg, k))).collect();
-    let mut add = |name: Arguments, unit, sign, negative, number: &mut f64| {
-        visit(Place { name, unit, sign, negative, number });
-    };
     let xyz = ["x", "y", "z"];
-    add(format_args!("gravity"), "m/s²", Sign::Positive, false, &mut robot.gravity);
+    visit(Place::new(format_args!("gravity"), "m/s²", Sign::Positive, false, &mut robot.gravity));
     let platform = &mut robot.platform;
     let name = &platform.name;
-    add(format_args!("links.{name}.mass"), "kg", Sign::Positive, false, &mut platform.mass);
+    visit(Place::new(format_args!("links.{name}.mass"), "kg", Sign::Positive, false, &mut platform.mass));
     for (number, axis) in platform.com.iter_mut().zip(xyz).filter(|(number, _)| **number != 0.0) {
-        add(format_args!("links.{name}.com.{axis}"), "m", Sign::Any, false, number);
+        visit(Place::new(format_args!("links.{name}.com.{axis}"), "m", Sign::Any, false, number));
     }
-    inertia(name, ["roll", "yaw", "pitch"], &mut platform.inertia, &mut add);
+    inertia(name, ["roll", "yaw", "pitch"], &mut platform.inertia, &mut visit);
     for (leg, mounts) in robot.legs.iter_mut().zip(mounts) {
         for ((number, mount), axis) in leg.mount.iter_mut().zip(mounts).zip(xyz) {
             if let Some((first, negative)) = mount {
-                add(format_args!("legs.{}.mount.{axis}", names[first]), "m", Sign::Any, negative, number);
+                let (name, own) = (&names[first], &leg.name);
+                let name = format_args!("legs.{name}.mount.{axis}");
+                let own = format_args!("legs.{own}.mount.{axis}");
+                visit(Place { own, ..Place::new(name, "m", Sign::Any, negative, number) });
             }
         }
         for segment in &mut leg.chain {
             let link = &mut segment.link;
             let name = &link.name;
-            add(format_args!("links.{name}.mass"), "kg", Sign::Positive, false, &mut link.mass);
+            visit(Place::new(format_args!("links.{name}.mass"), "kg", Sign::Positive, false, &mut link.mass));
             for (key, sign, place) in [("length", Sign::Positive, &mut link.end), ("com", Sign::Any, &mut link.com)] {
                 // A place on the link's axis is a distance along it.
                 if place[0] == 0.0 && place[2] == 0.0 {
-                    add(format_args!("links.{name}.{key}"), "m", sign, true, &mut place[1]);
+                    visit(Place::new(format_args!("links.{name}.{key}"), "m", sign, true, &mut place[1]));
                     continue;
                 }
                 for (number, axis) in place.iter_mut().zip(xyz) {
-                    add(format_args!("links.{name}.{key}.{axis}"), "m", Sign::Any, false, number);
+                    visit(Place::new(format_args!("links.{name}.{key}.{axis}"), "m", Sign::Any, false, number));
                 }
             }
-            inertia(name, ["lateral", "axial", "swing"], &mut link.inertia, &mut add);
+            inertia(name, ["lateral", "axial", "swing"], &mut link.inertia, &mut visit);
             let actuator = &mut segment.joint.actuator;
             let name = format_args!("actuators.{}.rotor_inertia", actuator.name);
-            add(name, "kg·m²", Sign::NonNegative, false, &mut actuator.rotor_inertia);
+            visit(Place::new(name, "kg·m²", Sign::NonNegative, false, &mut actuator.rotor_inertia));
         }
     }
 }
 
 /// Moments under their names in the specification, and those products that are not zero.
-fn inertia(
-    link: &str,
-    moments: [&str; 3],
-    tensor: &mut Inertia,
-    add: &mut impl FnMut(Arguments, &'static str, Sign, bool, &mut f64),
-) {
+fn inertia(link: &str, moments: [&str; 3], tensor: &mut Inertia, visit: &mut impl FnMut(Place)) {
     for (i, number) in tensor.as_flattened_mut().iter_mut().enumerate() {
         let (row, column) = (i / 3, i % 3);
         if row == column {
             let name = format_args!("links.{link}.inertia.{}", moments[row]);
-            add(name, "kg·m²", Sign::NonNegative, false, number);
+            visit(Place::new(name, "kg·m²", Sign::NonNegative, false, number));
         } else if *number != 0.0 {
             // Minus the product stands on either side of the diagonal.
             let axes = ["yz", "zx", "xy"][3 - row - column];
-            add(format_args!("links.{link}.inertia.products.{axes}"), "kg·m²", Sign::Any, true, number);
+            visit(Place::new(format_args!("links.{link}.inertia.products.{axes}"), "kg·m²", Sign::Any, true, number));
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! It belongs to no gait. What the virtual legs of a gait stand for can be checked against it.
 
-use super::{Body, chain};
+use super::{Body, chain, names};
 use crate::spec::{Axis, Robot};
 
 /// The tree of rigid bodies of the real robot; SI units, body axes x forward, y up, z right.
@@ -21,7 +21,7 @@ pub struct Whole {
 /// A joint of a real leg.
 #[derive(Clone, Debug)]
 pub struct WholeJoint {
-    /// The leg's name and the joint's.
+    /// Its own in the robot.
     pub name: String,
     /// Rotor inertia times gear², kg·m².
     pub rotor_inertia: f64,
@@ -42,17 +42,15 @@ impl Whole {
     pub fn new(robot: &Robot) -> Whole {
         let mut bodies = vec![Body::platform(robot)];
         let mut joints = Vec::new();
-        let legs = robot.legs.iter().map(|leg| {
+        let of_legs = names::links(robot).into_iter().zip(names::joints(robot));
+        let legs = robot.legs.iter().zip(of_legs).map(|(leg, (link_names, joint_names))| {
             let (first, body) = (joints.len(), bodies.len());
             let mount = [0, 1, 2].map(|axis| leg.mount[axis] - robot.platform.com[axis]);
             let (mut links, foot) = chain(leg, mount, body, first);
-            for (link, segment) in links.iter_mut().zip(&leg.chain) {
-                link.name = format!("{}_{}", leg.name, link.name);
+            links.iter_mut().zip(link_names).for_each(|(link, name)| link.name = name);
+            for (segment, name) in leg.chain.iter().zip(joint_names) {
                 let motor = &segment.joint.actuator;
-                joints.push(WholeJoint {
-                    name: format!("{}_{}", leg.name, segment.joint.name),
-                    rotor_inertia: motor.rotor_inertia * motor.gear * motor.gear,
-                });
+                joints.push(WholeJoint { name, rotor_inertia: motor.rotor_inertia * motor.gear * motor.gear });
             }
             bodies.extend(links);
             WholeLeg { name: leg.name.clone(), joints: first..joints.len(), foot_body: bodies.len() - 1, foot }
