@@ -60,7 +60,8 @@ pub struct GaitResult {
     pub status: Status,
     /// In plain words.
     pub message: String,
-    /// The criterion, as the receipt's own integration gives it. Absent without an optimum.
+    /// The criterion, as the receipt's own integration gives it; with limits at each real leg that of the real joints, by the whole robot's
+    /// equations of motion. Absent without an optimum.
     pub cost: Option<f64>,
     pub costs: Option<Costs>,
     /// Whether the limits hold at each real leg by constraint, not only at the virtual legs.

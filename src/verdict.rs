@@ -6,6 +6,8 @@
 //! receipt. That a certificate is incomplete (sampled) is no reason against an optimum; it is said beside it.
 
 use crate::certificate::{Certificate, certify};
+use crate::constraints::sharing::applies;
+use crate::four_legs::RealLegs;
 use crate::model::Gait;
 use crate::motion::{Criterion, Motion};
 use crate::optimality::{KKT_RESIDUAL, Optimality, optimality};
@@ -35,7 +37,13 @@ impl Verdict {
     /// # Errors
     /// If the motion does not have the numbers that the gait needs, or cannot be followed to its end.
     pub fn new(gait: &dyn Gait, criterion: Criterion, speed: f64, motion: &Motion) -> Result<Verdict, VerifyError> {
-        let receipt = verify(gait.description(), motion, speed, GRID)?;
+        let mut receipt = verify(gait.description(), motion, speed, GRID)?;
+        if applies(gait.description())
+            && let Ok(legs) = RealLegs::new(gait, motion)
+        {
+            // What was minimized is the real joints' cost, which the whole robot's equations tell.
+            receipt.costs = legs.costs.proportional;
+        }
         let optimality = optimality(gait, criterion, speed, motion).ok();
         let mut verdict = Verdict { receipt, optimality, certificate: None, reasons: Vec::new() };
         verdict.must("the largest violation", verdict.receipt.max_violation, VIOLATION);

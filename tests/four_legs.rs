@@ -6,7 +6,9 @@ mod program;
 mod python;
 
 use piaffe::altered::Altered;
-use piaffe::four_legs::{Equations, Instant, Legs, Lift, Limits, RealLegs, Shares, Verdict, best};
+use piaffe::cycle::{Cycle, theta};
+use piaffe::export::{controller::controller, mjcf::mjcf, table::real_joints, urdf::urdf};
+use piaffe::four_legs::{Component, Equations, Instant, Legs, Lift, Limits, PLATFORM, RealLegs, Shares, Verdict, best};
 use piaffe::gaits::GAITS;
 use piaffe::model::Gait;
 use piaffe::motion::{Criterion, Motion};
@@ -73,10 +75,19 @@ fn in_curvet_and_trot_each_leg_does_half_and_no_shares_leave_more_room() {
         let gait = gait(key);
         let d = gait.description();
         for criterion in Criterion::ALL {
-            let (_, motion) = optimum(gait, criterion);
+            let (result, motion) = optimum(gait, criterion);
             let receipt = RealLegs::new(gait, &motion).unwrap();
             assert_eq!(receipt.verdict(), Verdict::EqualShares, "{receipt:?}");
-            assert!(receipt.equal_shares.support < 1e-12 && receipt.equal_shares.impact < 1e-12, "{receipt:?}");
+            // So counted, equal shares cost on the real joints what the virtual legs' joints cost.
+            let (cost, costs) = (result.cost.unwrap(), receipt.costs);
+            let ways = [costs.virtual_legs, costs.within_limits, costs.proportional].map(|costs| costs.of(criterion));
+            for real in ways {
+                assert!((real / cost - 1.0).abs() < 1e-6, "{key} {criterion:?}: {real} {cost}");
+            }
+            assert!(
+                receipt.equal_shares.support.share < 1e-12 && receipt.equal_shares.impact.share < 1e-12,
+                "{receipt:?}"
+            );
             assert!((receipt.largest_load - 0.5).abs() < 1e-9);
         }
         let legs = Legs::new(gait).unwrap();
@@ -109,12 +120,12 @@ fn in_an_amble_the_legs_of_a_side_do_together_what_the_virtual_leg_does() {
     let legs = Legs::new(gait).unwrap();
     let mut unequal = 0.0f64;
     for (m, i) in lifted(gait) {
-        assert!(i.remainder < 1e-12);
+        assert!(i.lack.share < 1e-12);
         let (mut torque, mut force) = (vec![0.0; gait.description().joints()], [0.0; 3]);
         legs.joints.iter().zip(&i.torque).for_each(|(j, gamma)| torque[*j] += gamma);
         i.reactions.iter().flatten().enumerate().for_each(|(k, f)| force[k % 3] += f);
         assert!(close(&torque, &m.torque, 1e-8) && close(&force, &m.force, 1e-8), "at {} s", m.time);
-        unequal = unequal.max(i.equal_remainder);
+        unequal = unequal.max(i.equal_lack.share);
     }
     assert!(unequal > 0.1, "equal shares lack {unequal}");
 }
@@ -129,11 +140,12 @@ fn no_other_shares_leave_more_room() {
             let (demand, columns) = (equations.demand(&i.posture.ud), equations.columns(&i.stance));
             let inside = i.posture.inside(m.force);
             let equal = nalgebra::DVector::from_iterator(6, (0..6).map(|k| inside[k % 3] / 2.0));
-            let shares = Shares::new(&columns.rows(0, 6).into_owned(), &demand.rows(0, 6).into_owned(), &equal);
+            let shares = Shares::new(&equations.ranks(&columns, &demand, PLATFORM, legs.axis()), &equal);
             assert_eq!(shares.squeezes.ncols(), 1);
             let pushed = columns.rows(0, 6) * &shares.squeezes;
             assert!(pushed.amax() < 1e-9, "the feet push against nothing but each other");
-            let rooms = Limits { legs: &legs }.support(&i.stance, &i.posture, &shares, &demand, &columns);
+            let motors = legs.motors(&i.posture, &shares, &demand, &columns);
+            let rooms = Limits { legs: &legs }.support(&i.stance, &i.posture, &shares, &motors);
             let found = best(&rooms, 1).unwrap();
             assert!((found.margin - i.margin).abs() < 1e-12);
             let margin = |s: f64| {
@@ -173,12 +185,23 @@ fn an_amble_with_limits_at_real_legs_is_one_that_they_can_walk() {
     let amble = gait("amble");
     let altered = Altered::at_real_legs(amble).unwrap();
     for criterion in Criterion::ALL {
-        let (without, motion) = optimum(amble, criterion);
-        let verdict = |motion: &Motion| RealLegs::new(amble, motion).unwrap().verdict();
-        assert_eq!(verdict(&motion), Verdict::BeyondLimits);
+        let real = |motion: &Motion| RealLegs::new(amble, motion).unwrap();
+        let (without, free) = optimum(amble, criterion);
+        assert_eq!(real(&free).verdict(), Verdict::BeyondLimits);
         let (with, motion) = optimum(&altered, criterion);
-        assert_eq!(verdict(&motion), Verdict::UnequalShares);
+        assert_eq!(real(&motion).verdict(), Verdict::UnequalShares);
         assert!(with.cost > without.cost.map(|c| 1.05 * c), "{:?} {:?}", with.cost, without.cost);
+        // What was minimized, in the optimizer's formulas, is what the whole robot's equations say of its real joints.
+        let mut cycle = Cycle::resolving(&altered, criterion, 0.6, &theta(&motion)).unwrap();
+        cycle.simulate(&theta(&motion)).unwrap();
+        let costs = real(&motion).costs;
+        let minimized = cycle.costs().of(criterion);
+        let [least, within, proportional, of_virtual] =
+            [costs.least, costs.within_limits, costs.proportional, costs.virtual_legs].map(|costs| costs.of(criterion));
+        println!("{criterion:?}: {minimized} {costs:?} {:?}", real(&free).costs);
+        assert!((proportional / minimized - 1.0).abs() < 1e-4, "{minimized} {proportional}");
+        assert!(of_virtual <= least * (1.0 + 1e-9) && least <= within && within <= proportional, "{costs:?}");
+        assert!((with.cost.unwrap() / proportional - 1.0).abs() < 1e-9, "{:?} {proportional}", with.cost);
     }
 }
 
@@ -202,13 +225,34 @@ fn an_impact_asks_for_no_moment_that_the_feet_cannot_give() {
     }
 }
 
+/// Nobody can meet the equations beside the plane in which a biped walks; those in it are met, and its motors do what the
+/// virtual legs' do.
+#[test]
+fn where_one_foot_stands_the_real_torques_are_the_virtual_ones() {
+    for gait in GAITS.iter().filter(|g| g.description().legs.iter().all(|leg| leg.members.len() == 1)) {
+        let legs = Legs::new(*gait).unwrap();
+        let lifted = lifted(*gait);
+        let most = lifted.iter().flat_map(|(m, _)| &m.torque).fold(0.0f64, |most, torque| most.max(torque.abs()));
+        for (m, i) in lifted {
+            let torques: Vec<f64> = legs.joints.iter().map(|j| m.torque[*j]).collect();
+            assert!(close(&i.torque, &torques, 1e-10 * most), "{:?} {torques:?}", i.torque);
+            assert!(close(&i.reactions[i.stance[0]], &m.force, 1e-10 * legs.weight()), "{:?}", i.reactions);
+        }
+    }
+}
+
 #[test]
 fn what_no_reactions_balance_is_said() {
     let gait = gait("rabbit/walk");
     let (_, motion) = optimum(gait, Criterion::Torque);
     let receipt = RealLegs::new(gait, &motion).unwrap();
     assert_eq!(receipt.verdict(), Verdict::NoEquilibrium);
-    assert!(receipt.best_shares.support > 0.01);
+    // In the plane nothing is lacking; beside it lie the feet.
+    assert_eq!(receipt.best_shares.support.of, Component::SidewaysMoment);
+    assert!(
+        receipt.best_shares.support.share > 0.01 && receipt.sentence().contains("a sideways moment of"),
+        "{receipt:?}"
+    );
 }
 
 /// The A1's mass centre lies beside its middle. Standing, the feet of a pair make up for it by unequal shares; at an impact,
@@ -218,10 +262,11 @@ fn a_robot_that_is_heavier_on_one_side_stands_but_does_not_land_evenly() {
     let gait = gait("a1/bound");
     let (_, motion) = optimum(gait, Criterion::Torque);
     let receipt = RealLegs::new(gait, &motion).unwrap();
-    assert!(receipt.equal_shares.support > 1e-3 && receipt.best_shares.support < 1e-12, "{receipt:?}");
+    assert!(receipt.equal_shares.support.share > 1e-3 && receipt.best_shares.support.share < 1e-12, "{receipt:?}");
     assert!(receipt.largest_load > 0.505, "{receipt:?}");
-    assert!(receipt.best_shares.impact > 1e-5 && receipt.best_shares.impact < 1e-2, "{receipt:?}");
-    assert!(receipt.verdict() == Verdict::NoEquilibrium && receipt.sentence().contains("momentum"), "{receipt:?}");
+    // That is little: less than what is known of masses, and it is said.
+    assert!(receipt.best_shares.impact.share > 1e-5 && receipt.best_shares.impact.share < 1e-2, "{receipt:?}");
+    assert!(receipt.verdict() != Verdict::NoEquilibrium && receipt.sentence().contains("momentum"), "{receipt:?}");
 }
 
 #[test]
@@ -309,4 +354,42 @@ fn equal_torques_are_not_those_of_an_amble() {
     });
     assert!(errors["feedback"].as_f64().unwrap() > 0.8, "{errors}");
     assert!(errors["reaction"].as_f64().unwrap() > 0.08 * errors["weight"].as_f64().unwrap(), "{errors}");
+}
+
+/// One real joint has one name, in whatever is written of it: the specification's own where that is one.
+#[test]
+fn a_real_joint_has_one_name_everywhere() {
+    for gait in GAITS {
+        let d = gait.description();
+        let legs = Legs::new(*gait).unwrap();
+        let whole: Vec<&str> = legs.whole.description().joints.iter().map(|j| j.name).collect();
+        let mut members: Vec<&str> = real_joints(d).map(|(_, name)| name).collect();
+        assert!(
+            members.iter().all(|name| whole.contains(name)) && members.len() == whole.len(),
+            "{members:?} {whole:?}"
+        );
+        members.sort_unstable();
+        members.dedup();
+        assert_eq!(members.len(), whole.len(), "each is there once");
+        // It follows the coordinate that the lift gives it.
+        for (coordinate, name) in real_joints(d) {
+            assert_eq!(legs.joints[whole.iter().position(|joint| *joint == name).unwrap()], coordinate, "{name}");
+        }
+        let (_, motion) = optimum(*gait, Criterion::Torque);
+        let walk = Walk::even(*gait, &motion, 2).unwrap();
+        let (mjcf, urdf) = (mjcf(&walk), urdf(d));
+        let program = serde_json::to_value(controller(*gait, &motion)).unwrap();
+        let half = &program["half_steps"][0];
+        let coordinates = half["coordinates"].as_array().unwrap().iter().chain([&half["unactuated"]]);
+        let followed: Vec<&Value> = coordinates.flat_map(|c| c["joints"].as_array().unwrap()).collect();
+        assert_eq!(followed.len(), whole.len());
+        for name in &whole {
+            assert!(mjcf.contains(&format!("<motor name=\"{name}\" joint=\"{name}\"")), "{name}: {mjcf}");
+            assert!(urdf.contains(&format!("<joint name=\"{name}\"")), "{name}: {urdf}");
+            assert!(followed.iter().any(|joint| joint == name), "{name}");
+        }
+    }
+    let names = |key: &str| gait(key).description().legs[0].members[0].joints.to_vec();
+    assert_eq!(names("trot"), ["fore_left_haunch", "fore_left_knee"]);
+    assert_eq!(names("a1/bound"), ["RL_thigh_joint", "RL_calf_joint"]);
 }

@@ -146,6 +146,7 @@ pub fn print(description: &Description, r: &GaitResult) -> std::io::Result<()> {
         writeln!(out, "  real legs       {}", legs.sentence())?;
         writeln!(out, "                  least margin {}", legs.support.words())?;
         writeln!(out, "                  at the impact {}", legs.impact.words())?;
+        writeln!(out, "                  {}", legs.cost(r.criterion))?;
     }
     writeln!(out, "  search          {}", confidence(r))?;
     if r.local_optima.len() > 1 {

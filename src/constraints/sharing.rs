@@ -1,4 +1,4 @@
-//! The limits of §6.1 at each real leg of the pair in support, where the platform rolls (§2.3).
+//! What each real leg does, and the limits of §6.1 there, of the pair in support, where the platform rolls (§2.3).
 //!
 //! The legs of a side have their feet at different places along Xf, so the moment N that keeps the platform from pitching and
 //! turning (kernel `sharing`) splits the vertical and the lateral reaction. Along Xf nothing does: there the legs can push
@@ -14,7 +14,7 @@
 
 use super::{Form, Limits, PathConstraint};
 use crate::instant::{Quantities, Shared};
-use crate::model::{Description, Leg};
+use crate::model::{Description, HalfSteps, Leg};
 use crate::number::{Dual, Scalar};
 
 /// Mounts nearer than this are at one place, m.
@@ -38,6 +38,12 @@ pub fn obstacle(d: &Description) -> Option<String> {
     if !d.lateral {
         return None;
     }
+    if d.half_steps == HalfSteps::Distinct {
+        return Some(format!(
+            "limits at each real leg need half steps that mirror each other; those of the {} do not",
+            d.gait
+        ));
+    }
     let apart = |leg: &Leg| {
         let [a, b] = leg.members.as_ref() else { return false };
         let [a, b] = [a.mount(), b.mount()];
@@ -58,13 +64,13 @@ pub fn offsets(d: &Description) -> Vec<f64> {
     mounts.iter().map(|x| x - mean).collect()
 }
 
-/// What a limit on a real leg depends on, and where among an instant's quantities it stands.
+/// Something of a real leg in support: what it depends on, and where among an instant's quantities that stands.
 #[derive(Clone, Debug)]
 pub struct Share<T = f64> {
     quantities: [usize; COUNT],
     /// The foot from the virtual foot, along Xf, m.
     offset: f64,
-    limit: Limit<T>,
+    of: Of<T>,
 }
 
 const COUNT: usize = 10;
@@ -76,7 +82,9 @@ const TORQUE: usize = 8;
 const RATE: usize = 9;
 
 #[derive(Clone, Copy, Debug)]
-enum Limit<T> {
+enum Of<T> {
+    /// The torque of a joint, N·m.
+    Torque,
     /// Vertical force ≥ this, N.
     Vertical(T),
     /// |tangential| ≤ this · vertical.
@@ -93,34 +101,23 @@ pub fn constraints<T: Scalar>(d: &Description, limits: &Limits<T>, y: &Quantitie
     let weight = d.total_mass() * d.gravity;
     let leg = &d.legs[0];
     let share = 1.0 / leg.members.len() as f64;
-    let shared = Shared::new(d);
-    let at = |index: usize| y.shared().start + index;
     for (member, offset) in leg.members.iter().zip(offsets(d)) {
-        let mut add = |name: String, unit: f64, joint: usize, limit: Limit<T>| {
-            let mut quantities = [0; COUNT];
-            for c in 0..3 {
-                quantities[FORCE + c] = y.force(c);
-                quantities[LEVER + c] = at(shared.lever(joint, c));
-            }
-            quantities[MOMENT] = at(shared.moment(0));
-            quantities[MOMENT + 1] = at(shared.moment(1));
-            quantities[TORQUE] = y.torque(leg.first_joint + joint);
-            quantities[RATE] = y.rate(leg.first_joint + joint);
-            let form = Form::Share(Share { quantities, offset, limit });
+        let mut add = |name: String, unit: f64, joint: usize, of: Of<T>| {
+            let form = Form::Share(Share { quantities: quantities(d, y, joint), offset, of });
             list.push(PathConstraint { name: format!("{name} of {}", member.name), form, unit, at_start: true });
         };
-        add("vertical force".into(), weight, 0, Limit::Vertical(limits.min_vertical_force.scale(share)));
-        add("friction".into(), weight, 0, Limit::Friction(limits.friction));
+        add("vertical force".into(), weight, 0, Of::Vertical(limits.min_vertical_force.scale(share)));
+        add("friction".into(), weight, 0, Of::Friction(limits.friction));
         for (k, j) in (leg.first_joint..leg.end_joint).enumerate() {
             let (joint, actuator) = (&d.joints[j], &limits.joints[j]);
             let bound = actuator.max_torque.scale(share);
             for sign in [1.0, -1.0] {
-                let limit = Limit::Actuator { bound, torque: T::from(sign), rate: 0.0 };
+                let limit = Of::Actuator { bound, torque: T::from(sign), rate: 0.0 };
                 add(format!("torque of {}", joint.name), joint.max_torque * share, k, limit);
             }
             let slope = (actuator.unloaded_speed - actuator.loaded_speed) / bound;
             for (rate, torque) in [(1.0, slope), (1.0, -slope), (-1.0, slope), (-1.0, -slope)] {
-                let limit = Limit::Actuator { bound: actuator.unloaded_speed, torque, rate };
+                let limit = Of::Actuator { bound: actuator.unloaded_speed, torque, rate };
                 add(format!("torque–speed of {}", joint.name), joint.unloaded_speed, k, limit);
             }
         }
@@ -128,43 +125,70 @@ pub fn constraints<T: Scalar>(d: &Description, limits: &Limits<T>, y: &Quantitie
     list
 }
 
-impl<T: Scalar> Limit<T> {
+/// The torques of all joints of the legs in support, each with the virtual leg's joint that it is one of.
+pub fn torques(d: &Description, y: &Quantities) -> Vec<(usize, Share)> {
+    let of_foot = |offset: f64| {
+        let leg = &d.legs[0];
+        let share = move |k: usize| Share { quantities: quantities(d, y, k), offset, of: Of::Torque };
+        (leg.first_joint..leg.end_joint).enumerate().map(move |(k, j)| (j, share(k)))
+    };
+    offsets(d).into_iter().flat_map(of_foot).collect()
+}
+
+/// Where what decides of a joint of the leg in support stands among an instant's quantities.
+fn quantities(d: &Description, y: &Quantities, joint: usize) -> [usize; COUNT] {
+    let shared = Shared::new(d);
+    let at = |index: usize| y.shared().start + index;
+    let mut quantities = [0; COUNT];
+    for c in 0..3 {
+        quantities[FORCE + c] = y.force(c);
+        quantities[LEVER + c] = at(shared.lever(joint, c));
+    }
+    quantities[MOMENT] = at(shared.moment(0));
+    quantities[MOMENT + 1] = at(shared.moment(1));
+    quantities[TORQUE] = y.torque(d.legs[0].first_joint + joint);
+    quantities[RATE] = y.rate(d.legs[0].first_joint + joint);
+    quantities
+}
+
+impl<T: Scalar> Of<T> {
     fn value(self, offset: f64, v: &[T; COUNT]) -> T {
         let over = 0.5 / offset;
         let vertical = v[FORCE + 1].scale(0.5) + v[MOMENT + 1].scale(over);
         let lateral = v[FORCE + 2].scale(0.5) - v[MOMENT].scale(over);
         let forward = v[FORCE] * vertical / v[FORCE + 1];
-        match self {
-            Limit::Vertical(least) => vertical - least,
-            Limit::Friction(mu) => mu * vertical - length([forward, lateral]),
-            Limit::Actuator { bound, torque, rate } => {
-                let mut gamma = v[TORQUE].scale(0.5);
-                for (c, force) in [forward, vertical, lateral].into_iter().enumerate() {
-                    gamma -= v[LEVER + c] * (force - v[FORCE + c].scale(0.5));
-                }
-                bound - torque * gamma - v[RATE].scale(rate)
+        let torque_of_joint = || {
+            let mut gamma = v[TORQUE].scale(0.5);
+            for (c, force) in [forward, vertical, lateral].into_iter().enumerate() {
+                gamma -= v[LEVER + c] * (force - v[FORCE + c].scale(0.5));
             }
+            gamma
+        };
+        match self {
+            Of::Torque => torque_of_joint(),
+            Of::Vertical(least) => vertical - least,
+            Of::Friction(mu) => mu * vertical - length([forward, lateral]),
+            Of::Actuator { bound, torque, rate } => bound - torque * torque_of_joint() - v[RATE].scale(rate),
         }
     }
 }
 
 impl<T: Scalar> Share<T> {
     pub fn value(&self, y: &[T]) -> T {
-        self.limit.value(self.offset, &self.quantities.map(|q| y[q]))
+        self.of.value(self.offset, &self.quantities.map(|q| y[q]))
     }
 }
 
 impl Share {
     /// The formula for other numbers.
     fn formula<T: Scalar>(&self, v: &[T; COUNT]) -> T {
-        let limit = match self.limit {
-            Limit::Vertical(least) => Limit::Vertical(T::from(least)),
-            Limit::Friction(mu) => Limit::Friction(T::from(mu)),
-            Limit::Actuator { bound, torque, rate } => {
-                Limit::Actuator { bound: bound.into(), torque: torque.into(), rate }
-            }
+        let of = match self.of {
+            Of::Torque => Of::Torque,
+            Of::Vertical(least) => Of::Vertical(T::from(least)),
+            Of::Friction(mu) => Of::Friction(T::from(mu)),
+            Of::Actuator { bound, torque, rate } => Of::Actuator { bound: bound.into(), torque: torque.into(), rate },
         };
-        limit.value(self.offset, v)
+        of.value(self.offset, v)
     }
 
     /// Calls `add(quantity, partial derivative)`.

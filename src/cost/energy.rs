@@ -7,57 +7,45 @@
 use super::{Integral, Kink};
 use crate::instant::Instants;
 use crate::lgl::NODES;
-use crate::model::Description;
 use crate::polynomial::{Roots, evaluate, roots};
 use crate::stance::Mesh;
 
-pub fn integrate(description: &Description, mesh: &Mesh, instants: &Instants, integral: &mut Integral) {
-    let y = instants.quantities;
+pub fn integrate(mesh: &Mesh, instants: &Instants, integral: &mut Integral) {
     let share = 1.0 / mesh.elements as f64;
-    for j in 0..description.joints() {
+    for k in 0..integral.drives.len() {
         for e in 0..mesh.elements {
             let node = |i: usize| e * (NODES - 1) + i;
             let mut power = [0.0; NODES];
             for (i, p) in power.iter_mut().enumerate() {
-                *p = instants.value(node(i), y.torque(j)) * instants.value(node(i), y.rate(j));
+                *p = integral.drives[k].power(instants.row(node(i)));
             }
             let (weights, roots) = absolute_weights(mesh, &power);
             for (i, (p, w)) in power.iter().zip(&weights).enumerate() {
-                let (torque, rate) = (y.torque(j), y.rate(j));
-                integral.value += share * w * p;
-                integral.partials.push((node(i), torque, share * w * instants.value(node(i), rate)));
-                integral.partials.push((node(i), rate, share * w * instants.value(node(i), torque)));
-                integral.seconds.push((node(i), torque, rate, share * w));
+                let (drive, y, first) = (&integral.drives[k], instants.row(node(i)), share * w);
+                integral.value += first * p;
+                drive.power_curvature(y, |a, b, second| integral.seconds.push((node(i), a, b, first * second)));
+                integral.add(node(i), &drive.power_partials(y), first, 0.0);
             }
             for (root, slope) in roots {
                 let shape = mesh.lobatto.values(root);
-                integral.kinks.push(Kink { joint: j, first: node(0), shape, weight: 2.0 * share / slope.abs(), slope });
+                integral.kinks.push(Kink { drive: k, first: node(0), shape, weight: 2.0 * share / slope.abs(), slope });
             }
         }
     }
 }
 
 /// √(power² + ε²) − ε by the quadrature of the collocation nodes: what a search may start with.
-pub fn integrate_smooth(
-    epsilon: f64,
-    description: &Description,
-    mesh: &Mesh,
-    instants: &Instants,
-    integral: &mut Integral,
-) {
-    let y = instants.quantities;
+pub fn integrate_smooth(epsilon: f64, mesh: &Mesh, instants: &Instants, integral: &mut Integral) {
     for (node, weight) in mesh.weights.iter().copied().enumerate() {
-        for j in 0..description.joints() {
-            let (torque, rate) = (instants.value(node, y.torque(j)), instants.value(node, y.rate(j)));
-            let power = torque * rate;
+        let y = instants.row(node);
+        for k in 0..integral.drives.len() {
+            let drive = &integral.drives[k];
+            let power = drive.power(y);
             let root = (power * power + epsilon * epsilon).sqrt();
             integral.value += weight * (root - epsilon);
             let (first, second) = (weight * power / root, weight * epsilon * epsilon / (root * root * root));
-            integral.partials.push((node, y.torque(j), first * rate));
-            integral.partials.push((node, y.rate(j), first * torque));
-            integral.seconds.push((node, y.torque(j), y.torque(j), second * rate * rate));
-            integral.seconds.push((node, y.rate(j), y.rate(j), second * torque * torque));
-            integral.seconds.push((node, y.torque(j), y.rate(j), second * power + first));
+            drive.power_curvature(y, |a, b, curvature| integral.seconds.push((node, a, b, first * curvature)));
+            integral.add(node, &drive.power_partials(y), first, second);
         }
     }
 }

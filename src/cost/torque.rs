@@ -2,17 +2,18 @@
 
 use super::Integral;
 use crate::instant::Instants;
-use crate::model::Description;
 use crate::stance::Mesh;
 
-pub fn integrate(description: &Description, mesh: &Mesh, instants: &Instants, integral: &mut Integral) {
+pub fn integrate(mesh: &Mesh, instants: &Instants, integral: &mut Integral) {
     for (node, weight) in mesh.weights.iter().copied().enumerate() {
-        for j in 0..description.joints() {
-            let quantity = instants.quantities.torque(j);
-            let torque = instants.value(node, quantity);
+        let y = instants.row(node);
+        for k in 0..integral.drives.len() {
+            let drive = &integral.drives[k];
+            let (torque, weight) = (drive.torque(y), weight * drive.sharing);
             integral.value += weight * torque * torque;
-            integral.partials.push((node, quantity, 2.0 * weight * torque));
-            integral.seconds.push((node, quantity, quantity, 2.0 * weight));
+            let first = 2.0 * weight * torque;
+            drive.torque_curvature(y, |a, b, second| integral.seconds.push((node, a, b, first * second)));
+            integral.add(node, &drive.torque_partials(y), first, 2.0 * weight);
         }
     }
 }

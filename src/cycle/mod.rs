@@ -347,7 +347,7 @@ impl<'a> Cycle<'a> {
             }
             phase.stance.integrate(self.gait, phase.leg, &phase.mesh, &phase.parameters)?;
             phase.instants.evaluate(self.gait, phase.leg, &phase.mesh, &phase.stance, &phase.parameters);
-            integrate(self.criterion, self.smoothing, d, &phase.mesh, &phase.instants, &mut phase.cost);
+            integrate(self.criterion, self.smoothing, &phase.mesh, &phase.instants, &mut phase.cost);
             phase.travel = phase.instants.platform(d, phase.last())[0] - phase.instants.platform(d, 0)[0];
             self.travel += phase.travel;
         }
@@ -379,7 +379,7 @@ impl<'a> Cycle<'a> {
             let mut sum = 0.0;
             for p in &self.phases {
                 let mut integral = Integral::new(d, &p.mesh);
-                integrate(criterion, 0.0, d, &p.mesh, &p.instants, &mut integral);
+                integrate(criterion, 0.0, &p.mesh, &p.instants, &mut integral);
                 sum += p.duration() * integral.value;
             }
             sum / self.travel

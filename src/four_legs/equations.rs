@@ -1,8 +1,12 @@
 //! The equations of motion of the whole robot at one posture, A u̇ + H = Sᵀ Γ + D F, and of an impact, A Δu = D I.
 
 use super::posture::Posture;
+use super::shares::Rank;
 use crate::model::whole::Whole;
 use nalgebra::{DMatrix, DVector, DVectorView};
+
+/// Speeds of the platform, which no motor drives: of its mass centre, and of its turning.
+pub const PLATFORM: usize = 6;
 
 /// A, H and D.
 pub struct Equations {
@@ -10,9 +14,7 @@ pub struct Equations {
     pub bias: DVector<f64>,
     /// n × 3 per leg, platform's axes.
     pub feet: DMatrix<f64>,
-    weight: f64,
     length: f64,
-    mass: f64,
 }
 
 impl Equations {
@@ -24,14 +26,11 @@ impl Equations {
         whole.inertia_and_bias(&posture.up(), &posture.omega(), &posture.q, posture.rates(), &mut out);
         let mut feet = vec![0.0; c + n * c];
         whole.feet(&posture.q, &mut feet);
-        let mass = d.total_mass();
         Equations {
             inertia: DMatrix::from_row_slice(n, n, &out[..n * n]),
             bias: DVector::from_column_slice(&out[n * n..]),
             feet: DMatrix::from_row_slice(n, c, &feet[c..]),
-            weight: mass * d.gravity,
             length,
-            mass,
         }
     }
 
@@ -51,19 +50,28 @@ impl Equations {
         self.feet.select_columns(&columns)
     }
 
-    /// The largest entry of a vector of forces and moments, in the robot's weight and in weight times length.
-    pub fn scaled(&self, forces: &DVector<f64>) -> f64 {
-        self.largest(forces, self.weight)
+    /// The first `rows` equations, of the feet's reactions alone, in two ranks: those that the virtual legs' model has too, so that
+    /// equal shares meet them, and the two moments that it knows nothing of. `axis` is the one about which its platform may turn.
+    pub fn ranks(&self, columns: &DMatrix<f64>, demand: &DVector<f64>, rows: usize, axis: usize) -> [Rank; 2] {
+        let (modelled, others): (Vec<usize>, Vec<usize>) =
+            (0..rows).partition(|row| !(3..PLATFORM).contains(row) || *row == 3 + axis);
+        [modelled, others].map(|rows| {
+            // Moments over a length, so that they are forces like the others.
+            let unit = DVector::from_iterator(rows.len(), rows.iter().map(|row| self.unit(*row)));
+            let mut rank = Rank { columns: columns.select_rows(&rows), demand: demand.select_rows(&rows) };
+            rank.demand.component_div_assign(&unit);
+            rank.columns.column_iter_mut().for_each(|mut column| column.component_div_assign(&unit));
+            rank
+        })
     }
 
-    /// The same of impulses, in the robot's momentum at 1 m/s and in that times length.
-    pub fn scaled_impulse(&self, impulses: &DVector<f64>) -> f64 {
-        self.largest(impulses, self.mass)
+    /// Forces and moments as forces: moments over the leg's length.
+    pub fn as_forces(&self, v: &DVector<f64>) -> DVector<f64> {
+        DVector::from_iterator(v.len(), v.iter().enumerate().map(|(row, x)| x / self.unit(row)))
     }
 
-    fn largest(&self, v: &DVector<f64>, unit: f64) -> f64 {
-        let each = v.iter().enumerate().map(|(k, x)| x.abs() / if k < 3 { unit } else { unit * self.length });
-        // A sum keeps what is no number, a maximum would not.
-        each.fold(0.0, |most, x| if x > most || x.is_nan() { x } else { most })
+    /// By what an equation is divided to be one of forces.
+    fn unit(&self, row: usize) -> f64 {
+        if row < 3 { 1.0 } else { self.length }
     }
 }

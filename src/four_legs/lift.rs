@@ -1,15 +1,17 @@
 //! The motion of virtual legs, lifted to the real robot: every joint, the platform in space, torques and reactions.
 
-use super::equations::Equations;
-use super::limits::{Limit, Limits};
-use super::margin::best;
+use super::cost::{Effort, Motor, Ways, least_energy, least_torque};
+use super::equations::{Equations, PLATFORM};
+use super::lack::Lack;
+use super::limits::{Affine, Limit, Limits};
+use super::margin::{Choice, best};
 use super::posture::{Legs, Posture};
 use super::shares::Shares;
 use crate::model::Gait;
 use crate::motion::Motion;
 use crate::stance::Undefined;
 use crate::walk::{Moment, Point, Walk};
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 /// Why there is no lifted motion.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -41,9 +43,11 @@ pub struct Instant {
     /// Least margin of the limits on the legs in support, and which are in the way of more.
     pub margin: f64,
     pub binding: Vec<(Limit, f64)>,
-    /// What the equations of motion lack with these shares, and with equal ones: weight, weight × leg length.
-    pub remainder: f64,
-    pub equal_remainder: f64,
+    /// What the equations of motion lack with these shares, and with equal ones.
+    pub lack: Lack,
+    pub equal_lack: Lack,
+    /// What the joints do, by ways to share.
+    pub efforts: Ways<Effort>,
 }
 
 /// The whole robot when feet land.
@@ -62,9 +66,9 @@ pub struct Impact {
     pub impulses: Vec<Point>,
     pub margin: f64,
     pub binding: Vec<(Limit, f64)>,
-    /// As for an instant; momentum at 1 m/s, and that times the leg length.
-    pub remainder: f64,
-    pub equal_remainder: f64,
+    /// As for an instant.
+    pub lack: Lack,
+    pub equal_lack: Lack,
 }
 
 /// One whole step of the real robot.
@@ -127,14 +131,38 @@ impl Legs<'_> {
         let (demand, columns) = (equations.demand(&posture.ud), equations.columns(&stance));
         let equal = self.equal(&posture, &stance, m.force);
         // The platform has no motors: its six equations are the reactions' alone.
-        let shares = Shares::new(&columns.rows(0, 6).into_owned(), &demand.rows(0, 6).into_owned(), &equal);
-        let rooms = Limits { legs: self }.support(&stance, &posture, &shares, &demand, &columns);
-        let best = best(&rooms, shares.squeezes.ncols()).ok_or(NotLifted::Unsolved { time: m.time })?;
+        let shares = Shares::new(&equations.ranks(&columns, &demand, PLATFORM, self.axis()), &equal);
+        let motors = self.motors(&posture, &shares, &demand, &columns);
+        let rooms = Limits { legs: self }.support(&stance, &posture, &shares, &motors);
+        let choice = Choice::new(&rooms, shares.squeezes.ncols()).ok_or(NotLifted::Unsolved { time: m.time })?;
+        let proportional = shares.nearest_to(&self.proportional(&posture, &shares.nearest));
+        // Of two feet the cheapest shares are known, of more feet not.
+        let (energy, torque) = match shares.squeezes.ncols() {
+            1 => (least_energy(&motors), least_torque(&motors)),
+            _ => (0.0, 0.0),
+        };
+        let efforts = Ways {
+            virtual_legs: Effort {
+                powers: m.torque.iter().zip(&m.qd).map(|(torque, rate)| torque * rate).collect(),
+                torque: m.torque.iter().map(|torque| torque * torque).sum(),
+            },
+            least: Effort::new(
+                &motors,
+                &choice.nearest(energy, f64::NEG_INFINITY),
+                &choice.nearest(torque, f64::NEG_INFINITY),
+            ),
+            within_limits: Effort::new(&motors, &choice.nearest(energy, 0.0), &choice.nearest(torque, 0.0)),
+            proportional: Effort::new(&motors, &proportional, &proportional),
+        };
+        let best = choice.best;
 
         let mut equal_lack = &demand - &columns * &equal;
-        (0..self.joints.len()).for_each(|j| equal_lack[6 + j] -= m.torque[self.joints[j]] / self.sharing(j));
+        (0..self.joints.len()).for_each(|j| equal_lack[PLATFORM + j] -= m.torque[self.joints[j]] / self.sharing(j));
         let reactions = shares.reactions(&best.s);
-        let torque = (&demand - &columns * &reactions).as_slice()[6..].to_vec();
+        let left = &demand - &columns * &reactions;
+        let torque = left.as_slice()[PLATFORM..].to_vec();
+        let lack = |left: &DVector<f64>| Lack::new(&equations.as_forces(left), &posture, self.weight());
+        let (lack, equal_lack) = (lack(&left.rows(0, PLATFORM).into_owned()), lack(&equal_lack));
         Ok(Instant {
             time: m.time,
             half_step: m.half_step,
@@ -144,8 +172,9 @@ impl Legs<'_> {
             torque,
             margin: best.margin,
             binding: best.binding,
-            remainder: equations.scaled(&shares.remainder),
-            equal_remainder: equations.scaled(&equal_lack),
+            lack,
+            equal_lack,
+            efforts,
         })
     }
 
@@ -172,20 +201,25 @@ impl Legs<'_> {
         // No joint takes an impulse: all equations are the feet's alone.
         let (demand, columns) = (equations.impulse_demand(&change), equations.columns(&landing));
         let equal = self.equal(&posture, &landing, impulse);
-        let shares = Shares::new(&columns, &demand, &equal);
+        let shares = Shares::new(&equations.ranks(&columns, &demand, demand.len(), self.axis()), &equal);
         let rooms = Limits { legs: self }.impact(&landing, &posture, &shares);
         let best = best(&rooms, shares.squeezes.ncols()).ok_or(NotLifted::Unsolved { time: m.time })?;
+        let impulses = shares.reactions(&best.s);
+        let lack = |impulses: &DVector<f64>| {
+            Lack::new(&equations.as_forces(&(&demand - &columns * impulses)), &posture, self.momentum())
+        };
+        let (lack, equal_lack) = (lack(&impulses), lack(&equal));
         Ok(Impact {
             time: m.time,
             half_step: m.half_step,
-            impulses: self.spread(&posture, &landing, &shares.reactions(&best.s)),
+            impulses: self.spread(&posture, &landing, &impulses),
             posture,
             change,
             landing,
             margin: best.margin,
             binding: best.binding,
-            remainder: equations.scaled_impulse(&shares.remainder),
-            equal_remainder: equations.scaled_impulse(&(&demand - &columns * &equal)),
+            lack,
+            equal_lack,
         })
     }
 
@@ -193,6 +227,33 @@ impl Legs<'_> {
     fn equal(&self, posture: &Posture, feet: &[usize], force: Point) -> DVector<f64> {
         let share = posture.inside(force.map(|f| f / feet.len() as f64));
         DVector::from_iterator(3 * feet.len(), feet.iter().flat_map(|_| share))
+    }
+
+    /// These reactions with their tangential parts in proportion to the vertical ones.
+    fn proportional(&self, posture: &Posture, reactions: &DVector<f64>) -> DVector<f64> {
+        let feet = reactions.as_slice().chunks_exact(3).map(|r| posture.outside([r[0], r[1], r[2]]));
+        let all = feet.clone().fold([0.0; 3], |sum, foot| [0, 1, 2].map(|k| sum[k] + foot[k]));
+        let feet =
+            feet.flat_map(|foot| posture.inside([all[0] * foot[1] / all[1], foot[1], all[2] * foot[1] / all[1]]));
+        DVector::from_iterator(reactions.len(), feet)
+    }
+
+    /// All joints with their torques over the choice of shares, Γ = demand − D F.
+    pub fn motors(
+        &self,
+        posture: &Posture,
+        shares: &Shares,
+        demand: &DVector<f64>,
+        columns: &DMatrix<f64>,
+    ) -> Vec<Motor> {
+        let torques = demand - columns * &shares.nearest;
+        let slopes = -(columns * &shares.squeezes);
+        let motor = |joint: usize| Motor {
+            torque: Affine { at: torques[PLATFORM + joint], slope: slopes.row(PLATFORM + joint).transpose() },
+            rate: posture.rates()[joint],
+            sharing: self.sharing(joint),
+        };
+        (0..self.joints.len()).map(motor).collect()
     }
 
     /// Of all feet, in world axes.

@@ -1,11 +1,11 @@
 //! What every real foot and joint must keep to, as margins that depend on how the reactions are shared.
 //!
-//! Units are those of the receipts: a foot's share of the robot's weight for forces, of its momentum at 1 m/s for impulses;
-//! the joint's greatest torque and its unloaded speed. So with equal shares every real leg has the virtual leg's margins.
+//! Units are a foot's share of the robot's weight for forces, of its momentum at the speed √(g × leg length) for impulses; the joint's greatest torque and its unloaded speed. So with equal shares every real leg has the virtual leg's margins.
 
+use super::cost::Motor;
 use super::posture::{Legs, Posture};
 use super::shares::Shares;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 /// A limit of §6.1 for one real leg or joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,29 +65,18 @@ impl Room {
 }
 
 impl Limits<'_> {
-    /// In support: of the feet `stance` and of their legs' joints. `demand` is what torques and reactions add up to,
-    /// `columns` D of these feet.
-    pub fn support(
-        &self,
-        stance: &[usize],
-        posture: &Posture,
-        shares: &Shares,
-        demand: &DVector<f64>,
-        columns: &DMatrix<f64>,
-    ) -> Vec<Room> {
+    /// In support: of the feet `stance` and of their legs' joints.
+    pub fn support(&self, stance: &[usize], posture: &Posture, shares: &Shares, motors: &[Motor]) -> Vec<Room> {
         let d = self.legs.description;
         let w = self.legs.whole.description();
-        let weight = w.total_mass() * d.gravity / stance.len() as f64;
+        let weight = self.legs.weight() / stance.len() as f64;
         let least = d.limits.min_vertical_force / stance.len() as f64;
         let mut rooms = self.feet(stance, posture, shares, weight, least / weight);
         for joint in stance.iter().flat_map(|leg| w.legs[*leg].joints.clone()) {
-            let motor = &d.joints[self.legs.joints[joint]];
-            let most = motor.max_torque / self.legs.sharing(joint);
-            // Γ = demand − D F.
-            let row = 6 + joint;
-            let torque = Affine::of(&columns.row(row).transpose(), shares).mapped(demand[row], -1.0);
-            let slowed = (motor.unloaded_speed - motor.loaded_speed) / motor.unloaded_speed;
-            let rate = posture.rates()[joint].abs() / motor.unloaded_speed;
+            let (limits, Motor { torque, rate, sharing }) = (&d.joints[self.legs.joints[joint]], &motors[joint]);
+            let most = limits.max_torque / sharing;
+            let slowed = (limits.unloaded_speed - limits.loaded_speed) / limits.unloaded_speed;
+            let rate = rate.abs() / limits.unloaded_speed;
             for sign in [1.0, -1.0] {
                 let used = sign / most;
                 rooms.push(Room::straight(Limit::Torque(joint), torque.mapped(1.0, -used)));
@@ -99,7 +88,7 @@ impl Limits<'_> {
 
     /// At the impact of the feet `landing`; no joint takes an impulse.
     pub fn impact(&self, landing: &[usize], posture: &Posture, shares: &Shares) -> Vec<Room> {
-        let momentum = self.legs.whole.description().total_mass() / landing.len() as f64;
+        let momentum = self.legs.momentum() / landing.len() as f64;
         self.feet(landing, posture, shares, momentum, 0.0)
     }
 

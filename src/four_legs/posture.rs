@@ -55,6 +55,21 @@ impl<'a> Legs<'a> {
         d.legs[usize::from(self.joints[joint] >= d.legs[1].first_joint)].members.len() as f64
     }
 
+    /// The robot's weight, N.
+    pub fn weight(&self) -> f64 {
+        self.whole.description().total_mass() * self.description.gravity
+    }
+
+    /// Its momentum at the speed √(g × leg length), N·s.
+    pub fn momentum(&self) -> f64 {
+        self.whole.description().total_mass() * (self.description.gravity * self.description.leg_length()).sqrt()
+    }
+
+    /// The axis about which the model of virtual legs lets the platform turn, or would: 0 for x, 2 for z.
+    pub fn axis(&self) -> usize {
+        if self.description.rotation == Rotation::Roll { 0 } else { 2 }
+    }
+
     /// The whole robot at a moment of the gait's walk.
     pub fn posture(&self, m: &Moment) -> Posture {
         let axes = self.axes(&m.q);

@@ -1,5 +1,7 @@
 //! The verdict on a motion: can the real legs do what the virtual ones do?
 
+use super::cost::RealCosts;
+use super::lack::Lack;
 use super::lift::{Lift, NotLifted};
 use super::limits::{Limit, Limits};
 use crate::model::Gait;
@@ -8,8 +10,9 @@ use serde::{Deserialize, Serialize};
 
 /// Intervals of each half step between the instants that are looked at.
 const INTERVALS: usize = 400;
-/// Largest remainder of equations that hold.
-pub const BALANCED: f64 = 1e-8;
+/// The part of weight, or of weight × leg length, that may be lacking. Masses and mass centres of a robot are hardly known
+/// better, and a foot that is no point presses a hundredth of a leg's length beside its middle.
+pub const BALANCED: f64 = 0.01;
 /// A margin above this is none that is violated.
 pub const LEAST_MARGIN: f64 = -1e-6;
 
@@ -17,13 +20,15 @@ pub const LEAST_MARGIN: f64 = -1e-6;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RealLegs {
     /// What the whole robot's equations lack if the legs of a pair do the same.
-    pub equal_shares: Remainder,
+    pub equal_shares: Lacks,
     /// What they lack with the best shares: more than rounding if no shares meet them.
-    pub best_shares: Remainder,
+    pub best_shares: Lacks,
     /// The instant of support with the least room, each with its best shares.
     pub support: Worst,
     /// The impact with the least room.
     pub impact: Worst,
+    /// What the motion costs on the real joints.
+    pub costs: RealCosts,
     /// Part of the step's time in which no shares keep to all limits.
     pub impossible: f64,
     /// The largest part of the vertical load that one foot carries: 1/2 if two carry the same.
@@ -32,12 +37,11 @@ pub struct RealLegs {
     pub instants: usize,
 }
 
-/// Largest remainder of the equations of motion: forces in the robot's weight and moments in weight × leg length; of the
-/// impacts' in its momentum at 1 m/s.
+/// The largest lack of the equations of motion, and of the impacts' equations.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Remainder {
-    pub support: f64,
-    pub impact: f64,
+pub struct Lacks {
+    pub support: Lack,
+    pub impact: Lack,
 }
 
 /// Where there is least room.
@@ -74,9 +78,9 @@ pub enum Verdict {
     NoEquilibrium,
 }
 
-impl Remainder {
+impl Lacks {
     fn holds(&self) -> bool {
-        self.support <= BALANCED && self.impact <= BALANCED
+        self.support.share <= BALANCED && self.impact.share <= BALANCED
     }
 }
 
@@ -109,16 +113,17 @@ impl RealLegs {
             most(&mut i.stance.iter().map(vertical)) / i.stance.iter().map(vertical).sum::<f64>()
         });
         RealLegs {
-            equal_shares: Remainder {
-                support: most(&mut instants.iter().map(|i| i.equal_remainder)),
-                impact: most(&mut impacts.iter().map(|i| i.equal_remainder)),
+            equal_shares: Lacks {
+                support: instants.iter().map(|i| i.equal_lack).fold(Lack::NONE, Lack::larger),
+                impact: impacts.iter().map(|i| i.equal_lack).fold(Lack::NONE, Lack::larger),
             },
-            best_shares: Remainder {
-                support: most(&mut instants.iter().map(|i| i.remainder)),
-                impact: most(&mut impacts.iter().map(|i| i.remainder)),
+            best_shares: Lacks {
+                support: instants.iter().map(|i| i.lack).fold(Lack::NONE, Lack::larger),
+                impact: impacts.iter().map(|i| i.lack).fold(Lack::NONE, Lack::larger),
             },
             support: worst(supports),
             impact: worst(landings),
+            costs: RealCosts::of(lift),
             impossible: impossible(lift),
             largest_load: most(loads),
             instants: instants.len(),

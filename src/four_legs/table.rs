@@ -31,7 +31,8 @@ struct Row {
     force: Vec<Point>,
     /// Least margin of the limits on the legs in support.
     margin: f64,
-    /// What the equations of motion lack, in the robot's weight: nothing but rounding, if reactions meet them at all.
+    /// The largest part that the equations of motion lack, of weight or weight × leg length: nothing but rounding, if reactions
+    /// meet them at all.
     remainder: f64,
 }
 
@@ -54,7 +55,7 @@ fn rows<'l>(lift: &'l Lift<'_>) -> impl Iterator<Item = Row> + 'l {
             torque: i.torque.clone(),
             force: i.reactions.clone(),
             margin: i.margin,
-            remainder: i.remainder,
+            remainder: i.lack.share,
         }
     })
 }

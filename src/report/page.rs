@@ -274,7 +274,7 @@ fn receipt(r: &GaitResult) -> Markup {
                 dt { "first-order optimality (KKT)" } dd { (receipt.kkt_residual.map_or(html! { "–" }, scientific)) }
             }
             @if let Some(c) = &r.certificate { (certificate::section(c)) }
-            @if let Some(legs) = &r.real_legs { (real_legs::section(legs)) }
+            @if let Some(legs) = &r.real_legs { (real_legs::section(legs, r.criterion)) }
             h3 { "Limits without room to spare" }
             @if receipt.findings.is_empty() { p { "None: all limits have room." } }
             ul { @for f in &receipt.findings {

@@ -2,12 +2,12 @@
 
 use super::figure::Figure;
 use super::ink::Ink;
-use super::page::scientific;
 use super::plot::{Curve, Limit, Plot};
 use super::scale::domain;
 use super::scene::{Dash, Xy};
 use super::subject::{Subject, spaced};
 use crate::four_legs::{Instant, Lift, RealLegs, Verdict, Worst};
+use crate::motion::Criterion;
 use maud::{Markup, html};
 
 /// Intervals per half step with which curves are drawn.
@@ -76,13 +76,15 @@ fn limit(plot: &mut Plot, at: f64, name: String) {
     plot.limits.push(Limit { name, points: vec![[from, at], [to, at]] });
 }
 
-pub fn section(legs: &RealLegs) -> Markup {
+pub fn section(legs: &RealLegs, criterion: Criterion) -> Markup {
     html! {
         h3 { "Real legs" }
-        p { b { (verdict(legs)) } " In the equations of motion of the whole robot, equal shares leave over "
-            (scientific(legs.equal_shares.support)) " of its weight in support and " (scientific(legs.equal_shares.impact))
-            " of its momentum at the impacts, the best shares " (scientific(legs.best_shares.support)) " and "
-            (scientific(legs.best_shares.impact)) "." }
+        p { b { (verdict(legs)) } " In the equations of motion of the whole robot, equal shares leave lacking at most "
+            (legs.equal_shares.support.words()) " in support and " (legs.equal_shares.impact.words_of_impact())
+            " at an impact, the best shares " (legs.best_shares.support.words()) " and "
+            (legs.best_shares.impact.words_of_impact()) "." }
+        p { "With the cheapest shares: " (legs.cost(criterion)) "; " (format!("{:.4}", legs.costs.proportional.of(criterion)))
+            " if each foot pushes in proportion to its load." }
         @if legs.verdict() != Verdict::NoEquilibrium {
             ul { (worst("Least room in support", &legs.support)) (worst("Least room at an impact", &legs.impact)) }
         }

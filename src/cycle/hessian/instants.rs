@@ -40,13 +40,11 @@ impl Cycle<'_> {
         for kink in &p.cost.kinks {
             let g = &mut work.local;
             g.fill(0.0);
-            let (torque, rate) = (p.instants.quantities.torque(kink.joint), p.instants.quantities.rate(kink.joint));
             for (i, shape) in kink.shape.iter().enumerate().take(NODES) {
                 let node = kink.first + i;
-                let y = p.linearized(node);
-                let (gt, gr) = (p.instants.gradient(node, torque), p.instants.gradient(node, rate));
-                for ((slot, a), b) in g.iter_mut().zip(gt).zip(gr) {
-                    *slot += shape * (y[rate] * a + y[torque] * b);
+                for (quantity, partial) in p.cost.drives[kink.drive].power_partials(p.linearized(node)) {
+                    let gradient = p.instants.gradient(node, quantity);
+                    g.iter_mut().zip(gradient).for_each(|(slot, by)| *slot += shape * partial * by);
                 }
             }
             // A root that the next step moves out of sight bends the cost less than its slope says:

@@ -1,33 +1,15 @@
-//! The share that leaves most room: maximize m over (s, m) with `height(s) − m ≥ |tangential(s)|` for every limit.
-//!
-//! A cone program of very few variables, solved by Clarabel. Its multipliers tell which limits stand in the way: no share has
-//! more room, because their weighted sum has not.
+//! The same for any number of feet: a cone program, `height(s) − m ≥ |tangential(s)|` for every limit, solved by Clarabel.
 
-use super::limits::{Limit, Room};
+use super::{Best, SLACK, weighed};
+use crate::four_legs::limits::Room;
 use crate::sqp::qp::interior::settings;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use nalgebra::DVector;
 
-/// Room that is given up for a share nearer to the equal one.
-const SLACK: f64 = 1e-9;
-/// Limits whose multipliers are below this part of the whole are not in the way.
-const IN_THE_WAY: f64 = 1e-3;
 const BISECTIONS: usize = 60;
 
-/// The share with the most room.
-#[derive(Clone, Debug)]
-pub struct Best {
-    pub s: DVector<f64>,
-    /// The least margin of all limits.
-    pub margin: f64,
-    /// The limits in the way of more room with their weights, which sum to 1; heaviest first.
-    pub binding: Vec<(Limit, f64)>,
-}
-
-/// Of all shares with the least margin as large as it can be (to 1e-9), the one on the way to it from `s = 0` that comes first.
-///
-/// `None` if the cone program was not solved, which takes numbers that are none.
+/// See [`best`](super::best). `None` if the cone program was not solved.
 pub fn best(rooms: &[Room], squeezes: usize) -> Option<Best> {
     let solution = maximize(rooms, squeezes)?;
     let margin = |s: &DVector<f64>| rooms.iter().map(|room| room.margin(s)).fold(f64::INFINITY, f64::min);
@@ -73,16 +55,7 @@ fn maximize(rooms: &[Room], squeezes: usize) -> Option<Best> {
         return None;
     }
     // The multiplier of m's column: those of the heights sum to 1.
-    let mut binding: Vec<(Limit, f64)> = Vec::new();
-    for (limit, row) in of {
-        let weight = solver.solution.z[row];
-        match binding.iter_mut().find(|known| known.0 == limit) {
-            Some(known) => known.1 += weight,
-            None => binding.push((limit, weight)),
-        }
-    }
-    binding.retain(|(_, weight)| *weight > IN_THE_WAY);
-    binding.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let binding = weighed(of.into_iter().map(|(limit, row)| (limit, solver.solution.z[row])));
     let x = &solver.solution.x;
     Some(Best { s: DVector::from_column_slice(&x[..squeezes]), margin: x[squeezes], binding })
 }
