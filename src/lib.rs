@@ -32,6 +32,7 @@ pub mod stability;
 pub mod stance;
 pub mod states;
 pub mod trajectory;
+pub mod units;
 pub mod verdict;
 pub mod verify;
 pub mod walk;

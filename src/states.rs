@@ -1,9 +1,10 @@
 //! The dynamics of a gait at given states, as JSON: for checking against other implementations.
 //!
 //! Every quantity comes from the generated kernels; the only numerics here are the condition
-//! numbers of the linear systems behind them, which tell a singular case from a result.
+//! numbers of the linear systems behind them in the robot's units, which tell a singular case from a result.
 
 use crate::model::{Description, Gait, Rotation};
+use crate::units::Units;
 use nalgebra::DMatrix;
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
@@ -106,14 +107,15 @@ fn evaluate_state(gait: &dyn Gait, index: usize, state: &State) -> Result<Value,
     put("com", json!(com[..np]));
     put("com_velocity", json!(com[np..]));
     let feet = [0, 1].map(|leg| vector(n * np, |o| gait.foot_jacobian(leg, q, o)));
+    let (scaled, scaled_feet) = in_own_units(gait.description(), &a, &feet);
     for leg in 0..2 {
         let i = leg + 1;
         put(&format!("d{i}"), json!(vector(np, |o| gait.foot(leg, &state.x, o))));
         put(&format!("D{i}"), rows(&feet[leg], np));
         put(&format!("H{i}"), json!(vector(np, |o| gait.foot_bias(leg, q, qd, o))));
         put(&format!("sigma_about_d{i}"), json!(vector(1, |o| gait.angular_momentum(leg, &state.x, &state.xd, o))[0]));
-        put(&format!("ss{i}"), single_support(gait, leg, state, &a, &feet[leg]));
-        let condition = condition(&contact_system(&a, &[&feet[leg]], n, np));
+        put(&format!("ss{i}"), single_support(gait, leg, state, &scaled, &scaled_feet[leg]));
+        let condition = condition(&contact_system(&scaled, &[&scaled_feet[leg]], n, np));
         put(
             &format!("impact12_leg{i}"),
             unless_singular(condition, "the inertia seen by the foot vanishes", || {
@@ -122,7 +124,7 @@ fn evaluate_state(gait: &dyn Gait, index: usize, state: &State) -> Result<Value,
             }),
         );
     }
-    let condition = condition(&contact_system(&a, &[&feet[0], &feet[1]], n, np));
+    let condition = condition(&contact_system(&scaled, &[&scaled_feet[0], &scaled_feet[1]], n, np));
     put(
         "impact11",
         unless_singular(
@@ -203,6 +205,15 @@ fn rows(values: &[f64], columns: usize) -> Value {
     json!(values.chunks(columns).collect::<Vec<_>>())
 }
 
+/// A and both D in the robot's units: else a condition number tells of metres and radians.
+fn in_own_units(d: &Description, a: &[f64], feet: &[Vec<f64>; 2]) -> (Vec<f64>, [Vec<f64>; 2]) {
+    let (units, np, n) = (Units::new(d), d.positions(), d.positions() + d.orientations());
+    let per = |i: usize| if i < np { 1.0 } else { 1.0 / units.length };
+    let inertia = a.iter().enumerate().map(|(k, x)| x * per(k / n) * per(k % n) / units.mass).collect();
+    let jacobian = |foot: &Vec<f64>| foot.iter().enumerate().map(|(k, x)| x * per(k / np)).collect();
+    (inertia, [jacobian(&feet[0]), jacobian(&feet[1])])
+}
+
 /// `[A −D; Dᵀ 0]` of eq. 11 or 12.
 fn contact_system(a: &[f64], feet: &[&Vec<f64>], n: usize, nc: usize) -> DMatrix<f64> {
     let size = n + nc * feet.len();
@@ -247,7 +258,7 @@ fn inverse_system(gait: &dyn Gait, leg: usize, q: &[f64], a: &[f64], foot: &[f64
             gait.inverse_jacobian(leg, q, &still, &still[..d.prescribed()], o);
         });
         let balance = &jacobian[1 + joints + np + (rows - 1) * columns..];
-        m[(n + np, np)] = balance[2 * nq + d.unactuated];
+        m[(n + np, np)] = balance[2 * nq + d.unactuated] / Units::new(d).inertia();
     }
     m
 }

@@ -18,12 +18,13 @@ use crate::motion::HalfStep;
 use crate::number::Dual;
 use crate::number::Scalar;
 use crate::verify::instants::{Instants, State};
+use crate::verify::margins::Units;
 use crate::verify::numbers::Numbers;
 use num_traits::Zero;
 
-/// Half width of the tube in which β and β̇ must stay, rad and rad/s.
+/// Half width of the tube in which β, rad, and β̇, in the unit of slow rates, must stay.
 const TUBE: f64 = 1e-6;
-/// Pieces with a greater defect are halved, rad/s².
+/// Pieces with a greater defect are halved; in the square of that unit.
 const DEFECT: f64 = 1e-9;
 /// A half step begins with 2 to the power of this many pieces.
 const COARSEST: i32 = 3;
@@ -92,6 +93,8 @@ struct Solver<'a> {
     gradient: Instants<'a, Gradient>,
     states: (State, State<Model>, State<Gradient>),
     duration: f64,
+    /// A slow rate of the robot, rad/s.
+    rate: f64,
     nodes: [f64; ACCELERATION],
 }
 
@@ -104,6 +107,7 @@ impl<'a> Solver<'a> {
             gradient: Instants::new(description, Numbers::new(description), &half_step.cast(), leg),
             states: (State::new(description), State::new(description), State::new(description)),
             duration: half_step.duration,
+            rate: Units::new(description).rate(),
             nodes: std::array::from_fn(node),
         }
     }
@@ -124,10 +128,11 @@ impl<'a> Solver<'a> {
         let t = share * self.duration.into();
         let (_, state, gradient_state) = &mut self.states;
         let defect = (acceleration - self.model.accelerate(t, [beta, rate], state)?).magnitude();
-        if defect.is_nan() || defect > DEFECT {
+        if defect.is_nan() || defect > DEFECT * self.rate * self.rate {
             return None;
         }
-        let variable = |x: Model, k| Gradient::variable(x.cast().widened(TUBE), k);
+        let widths = [TUBE, TUBE * self.rate];
+        let variable = |x: Model, k: usize| Gradient::variable(x.cast().widened(widths[k]), k);
         let tube = [variable(beta, 0), variable(rate, 1)];
         let slopes = self.gradient.accelerate(Dual::constant(t.cast()), tube, gradient_state)?;
         let [a, b] = slopes.d.map(|d| d.magnitude());
@@ -138,7 +143,8 @@ impl<'a> Solver<'a> {
         let room = (1.0 - above(h * b + h * h * a)) * (1.0 - 1e-13);
         let v = above((ed + h * (defect + a * e)) / room);
         let u = above(e + h * v);
-        (room >= 0.5 && u <= TUBE && v <= TUBE).then(|| Piece { share, beta: [beta.widened(u), rate.widened(v)] })
+        (room >= 0.5 && u <= widths[0] && v <= widths[1])
+            .then(|| Piece { share, beta: [beta.widened(u), rate.widened(v)] })
     }
 
     /// A polynomial for β̈ that need not be exact.
@@ -154,7 +160,7 @@ impl<'a> Solver<'a> {
                 let betad = start[1] + rate.at(tau).value();
                 let b = start[0] + start[1] * half_time * (tau + 1.0) + beta.at(tau).value();
                 let found = self.plain.accelerate(t, [b, betad], &mut self.states.0)?;
-                change = change.max((found - *value).abs() / found.abs().max(1.0));
+                change = change.max((found - *value).abs() / found.abs().max(self.rate * self.rate));
                 *value = found;
             }
             acceleration = interpolated(&self.nodes, values);
@@ -231,13 +237,13 @@ mod tests {
 
             // A polynomial that is off gives a wider proof, not a wrong one.
             let good = solver.picard(share, half_time, exactly([0.0; 2]).map(Ball::value)).unwrap();
-            for spoilt in
-                [Model::from(8e-10), Model::polynomial(&[0.0, -5e-10]), Model::polynomial(&[3e-10, 0.0, 4e-10])]
-            {
+            let unit = solver.rate * solver.rate;
+            for spoilt in [[8e-10, 0.0, 0.0], [0.0, -5e-10, 0.0], [3e-10, 0.0, 4e-10]] {
+                let spoilt = Model::polynomial(&spoilt.map(|x| x * unit));
                 let found = solver.proven(good + spoilt, share, half_time, exactly([0.0; 2])).unwrap();
                 meet(&found, &exact);
             }
-            assert!(solver.proven(good + Model::from(1e-6), share, half_time, exactly([0.0; 2])).is_none());
+            assert!(solver.proven(good + Model::from(1e-6 * unit), share, half_time, exactly([0.0; 2])).is_none());
 
             // A start that is known up to a ball leads wherever it leads from anywhere in it.
             let reach = [1e-9, 1e-8];

@@ -124,6 +124,7 @@ pub fn certify(description: &Description, motion: &Motion, speed: f64) -> Result
         half_steps: Vec::new(),
     };
     let balls: Vec<_> = motion.half_steps.iter().map(|h| h.cast::<Ball>()).collect();
+    let units = Units::new(description);
     let (mut cycle_error, mut travel) = (0.0_f64, Ball::zero());
     for (i, half_step) in motion.half_steps.iter().enumerate() {
         let pieces = match enclose(description, half_step, stance_leg(description, i)) {
@@ -139,12 +140,12 @@ pub fn certify(description: &Description, motion: &Motion, speed: f64) -> Result
         travel += at_ends(description, &balls[i], i, [start, end], &mut proof);
         let at_impact = |constraint, margin: Ball| proof.note(constraint, &margin, [1.0, 1.0]);
         let distances = transition(description, Numbers::new(description), &balls, i, at_impact);
-        let all = distances.map_or(vec![Ball::UNKNOWN], |found| [found, closure(&balls[i], end).to_vec()].concat());
+        let all =
+            distances.map_or(vec![Ball::UNKNOWN], |found| [found, closure(&units, &balls[i], end).to_vec()].concat());
         cycle_error = all.iter().map(Ball::magnitude).fold(cycle_error, f64::max);
         if i + 1 == balls.len() {
             let duration = balls.iter().fold(Ball::zero(), |sum, h| sum + h.duration);
-            let difference = travel / duration - speed.into();
-            proof.note(Constraint::MeanSpeed, &-difference.abs(), [1.0, 1.0]);
+            proof.note(Constraint::MeanSpeed, &Units::mean_speed(travel / duration, speed), [1.0, 1.0]);
         }
         let width = end.map(|b| 2.0 * b.rest());
         certificate.half_steps.push(Enclosure { subintervals: pieces.len(), evaluations: proof.evaluations, width });
@@ -194,14 +195,10 @@ fn at_ends(
         state
     };
     let [first, last] = [at(0.0, start), at(1.0, end)];
-    let [shortest, longest] = description.limits.half_step_duration.map(Ball::from);
-    for (constraint, margin) in [
-        (Constraint::Touchdown, -last.swing.y.abs() / units.leg.into()),
-        (Constraint::Shortest, half_step.duration - shortest),
-        (Constraint::Longest, longest - half_step.duration),
-    ] {
+    proof.note(Constraint::Touchdown, &(-last.swing.y.abs() / units.leg.into()), [1.0, 1.0]);
+    units.duration(instants.numbers(), half_step.duration, |constraint, margin| {
         proof.note(constraint, &margin, [1.0, 1.0]);
-    }
+    });
     last.platform.x - first.platform.x
 }
 

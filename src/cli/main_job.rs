@@ -1,5 +1,6 @@
 //! The main job: every gait and criterion at 0.6 m/s, beside the values of the paper (§6.2, §6.3).
 
+use super::digits::decimal;
 use super::optimize::{progress, solve};
 use super::{first_robot, output, report};
 use piaffe::motion::Criterion;
@@ -85,15 +86,16 @@ pub fn run(folder: &Path) -> anyhow::Result<bool> {
 
 fn row(r: &GaitResult) -> std::io::Result<()> {
     let mut out = output::person();
-    let durations: Vec<String> = r.durations.iter().map(|t| format!("{t:.3}")).collect();
+    let durations: Vec<String> = r.durations.iter().map(|t| decimal(*t, 3)).collect();
     let published = PUBLISHED.iter().find(|p| p.gait == r.gait && p.criterion == r.criterion);
     let (paper, paper_steps) = published.map_or((String::new(), ""), |p| (format!("{:.2}", p.cost), p.durations));
     match (r.cost, &r.receipt) {
         (Some(cost), Some(receipt @ Receipt { kkt_residual: Some(kkt), .. })) => writeln!(
             out,
-            "{:<8} {:<9} {cost:>10.4} {:<7} {:<13} {:>9.1e} {:>9.1e} {:>9.1e}  {paper:>10} {paper_steps:<12} {:<6}  {:<9}  {}",
+            "{:<8} {:<9} {:>10} {:<7} {:<13} {:>9.1e} {:>9.1e} {:>9.1e}  {paper:>10} {paper_steps:<12} {:<6}  {:<9}  {}",
             r.gait,
             r.criterion.name(),
+            decimal(cost, 4),
             r.criterion.unit(),
             durations.join("/"),
             receipt.max_violation,

@@ -1,6 +1,7 @@
 //! `piaffe`: what a person types, and what comes back.
 
 mod built;
+mod digits;
 mod document;
 mod dynamics;
 mod export;

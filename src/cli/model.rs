@@ -1,5 +1,6 @@
 //! `piaffe model`: what was generated for a gait, and its equations.
 
+use super::digits::decimal;
 use super::output;
 use piaffe::model::{Description, Gait, HalfSteps, Rotation};
 use serde_json::{Value, json};
@@ -97,11 +98,11 @@ fn as_text(d: &Description) -> String {
         "body", "mass, kg", "joint from parent, m", "mass centre, m", "inertia x, y, z, kg·m²"
     ));
     for b in d.bodies.iter() {
-        let [joint, com] = [b.offset, b.com].map(|v| v.map(|x| format!("{x:.4}")).join(" "));
-        let inertia = [0, 1, 2].map(|k| format!("{:.6}", b.inertia[k][k])).join(" ");
-        line(format_args!("{:<12} {:>8.4} {joint:>25} {com:>28} {inertia:>32}", b.name, b.mass));
+        let [joint, com] = [b.offset, b.com].map(|v| v.map(|x| decimal(x, 4)).join(" "));
+        let inertia = [0, 1, 2].map(|k| decimal(b.inertia[k][k], 4)).join(" ");
+        line(format_args!("{:<12} {:>8} {joint:>25} {com:>28} {inertia:>32}", b.name, decimal(b.mass, 4)));
     }
-    line(format_args!("{:<12} {:>8.4}", "in all", d.total_mass()));
+    line(format_args!("{:<12} {:>8}", "in all", decimal(d.total_mass(), 4)));
     line(format_args!(
         "\n{:<24} {:>9} {:>9} {:>9} {:>8} {:>8}",
         "kernel", "derived", "factored", "divisions", "sin, cos", "bytes"

@@ -1,5 +1,6 @@
 //! A result for a person.
 
+use super::digits::decimal;
 use piaffe::certificate::Certificate;
 use piaffe::model::Description;
 use piaffe::motion::Criterion;
@@ -21,7 +22,8 @@ fn standing(c: &Certificate) -> String {
     }
     let gaps = c.gaps.iter().map(|gap| {
         let verdict = if gap.violated { "broken" } else { "unproven" };
-        format!("{} {verdict} in half step {} from {:.6} to {:.6} s", gap.constraint, gap.half_step, gap.from, gap.to)
+        let [from, to] = [gap.from, gap.to].map(|t| decimal(t, 6));
+        format!("{} {verdict} in half step {} from {from} to {to} s", gap.constraint, gap.half_step)
     });
     let open = c.cycle_error.is_none_or(|error| error > c.tolerance).then(|| "cycle not proven to close".to_string());
     format!("sampled: {}", gaps.chain(open).collect::<Vec<_>>().join("\n                  "))
@@ -50,29 +52,30 @@ pub fn print(description: &Description, r: &GaitResult) -> std::io::Result<()> {
             } else {
                 "in the way".into()
             };
-            writeln!(out, "  {:<34} half step {}, t = {:.3} s: {what}", c.constraint, c.half_step, c.time)?;
+            writeln!(out, "  {:<34} half step {}, t = {} s: {what}", c.constraint, c.half_step, decimal(c.time, 3))?;
         }
     }
     if r.status == Status::Infeasible {
         match r.nearest_speed {
-            Some(v) => writeln!(out, "  The nearest speed that works is {v:.3} m/s.")?,
+            Some(v) => writeln!(out, "  The nearest speed that works is {} m/s.", decimal(v, 3))?,
             None => writeln!(out, "  No speed nearby works either: loosen one of these limits in the specification.")?,
         }
     }
     if let (Some(cost), Some(costs)) = (r.cost, r.costs) {
-        writeln!(out, "  cost            {cost:.4} {}", r.criterion.unit())?;
+        writeln!(out, "  cost            {} {}", decimal(cost, 4), r.criterion.unit())?;
         if let Some(without) = r.virtual_cost {
             let more = 100.0 * (cost / without - 1.0);
-            writeln!(out, "  at real legs    {more:+.3} % against {without:.4} with limits at the virtual legs only")?;
+            let without = decimal(without, 4);
+            writeln!(out, "  at real legs    {more:+.3} % against {without} with limits at the virtual legs only")?;
         }
         for criterion in Criterion::ALL {
-            writeln!(out, "  {:<15} {:.4} {}", criterion.name(), costs.of(criterion), criterion.unit())?;
+            writeln!(out, "  {:<15} {} {}", criterion.name(), decimal(costs.of(criterion), 4), criterion.unit())?;
         }
     }
     if let Some(step) = r.step_length {
-        let durations: Vec<String> = r.durations.iter().map(|t| format!("{t:.4} s")).collect();
+        let durations: Vec<String> = r.durations.iter().map(|t| format!("{} s", decimal(*t, 4))).collect();
         writeln!(out, "  half steps      {}", durations.join(" + "))?;
-        writeln!(out, "  step length     {step:.4} m")?;
+        writeln!(out, "  step length     {} m", decimal(step, 4))?;
     }
     if !r.peaks.is_empty() {
         writeln!(out, "  peaks at the joints     torque, N·m        speed, rad/s (motor, rev/min)   envelope margin")?;
@@ -80,12 +83,12 @@ pub fn print(description: &Description, r: &GaitResult) -> std::io::Result<()> {
     for (peak, joint) in r.peaks.iter().zip(description.joints.iter()) {
         writeln!(
             out,
-            "    {:<16} {:8.3} of {:<6.1} {:10.3} of {:<6.2} ({:4.0} of {:4.0}) {:14.1} %",
+            "    {:<16} {:>8} of {:<6} {:>10} of {:<6} ({:4.0} of {:4.0}) {:14.1} %",
             peak.name,
-            peak.torque,
-            peak.max_torque,
-            peak.speed,
-            peak.unloaded_speed,
+            decimal(peak.torque, 3),
+            decimal(peak.max_torque, 1),
+            decimal(peak.speed, 3),
+            decimal(peak.unloaded_speed, 2),
             rev_per_min(peak.speed, joint.gear),
             rev_per_min(peak.unloaded_speed, joint.gear),
             // An active limit has a margin of rounding size, of either sign.
@@ -108,7 +111,7 @@ pub fn print(description: &Description, r: &GaitResult) -> std::io::Result<()> {
         let active: Vec<String> = receipt
             .findings
             .iter()
-            .map(|f| format!("{} (half step {}, t = {:.3} s)", f.constraint, f.half_step, f.time))
+            .map(|f| format!("{} (half step {}, t = {} s)", f.constraint, f.half_step, decimal(f.time, 3)))
             .collect();
         writeln!(
             out,
@@ -118,8 +121,11 @@ pub fn print(description: &Description, r: &GaitResult) -> std::io::Result<()> {
         if let Some(worst) = receipt.worst.as_ref().filter(|_| r.status != Status::Optimal) {
             writeln!(
                 out,
-                "  worst           {} (half step {}, t = {:.3} s): {:.2e}",
-                worst.constraint, worst.half_step, worst.time, worst.margin
+                "  worst           {} (half step {}, t = {} s): {:.2e}",
+                worst.constraint,
+                worst.half_step,
+                decimal(worst.time, 3),
+                worst.margin
             )?;
         }
     }
@@ -152,8 +158,8 @@ pub fn print(description: &Description, r: &GaitResult) -> std::io::Result<()> {
     if r.local_optima.len() > 1 {
         writeln!(out, "  local optima    (cost, half steps, how many starts led there)")?;
         for o in &r.local_optima {
-            let durations: Vec<String> = o.durations.iter().map(|t| format!("{t:.3}")).collect();
-            writeln!(out, "    {:12.4}  {}  {}", o.cost, durations.join("/"), o.reached)?;
+            let durations: Vec<String> = o.durations.iter().map(|t| decimal(*t, 3)).collect();
+            writeln!(out, "    {:>12}  {}  {}", decimal(o.cost, 4), durations.join("/"), o.reached)?;
         }
     }
     writeln!(out, "  time            {:.3} s", r.seconds)

@@ -1,5 +1,6 @@
 //! `piaffe sweep`: optima over speeds, greatest speeds and crossovers, resumed where an earlier run stopped.
 
+use super::digits::decimal;
 use super::document::OVERVIEW;
 use super::journal::{Folder, effort};
 use super::{output, report, speed};
@@ -130,7 +131,7 @@ fn tell(lines: &[Line], criteria: &[Criterion], speeds: &[f64], overview: &Overv
             Some(m) => {
                 let weightiest = &m.ended_by[..m.ended_by.len().min(3)];
                 let why = if weightiest.is_empty() { "no single constraint".into() } else { weightiest.join(", ") };
-                writeln!(out, "{name} goes up to {:.3} m/s; what stops it: {why}", m.speed)?;
+                writeln!(out, "{name} goes up to {} m/s; what stops it: {why}", decimal(m.speed, 3))?;
             }
             None => writeln!(out, "{name}: no greatest speed found")?,
         }
@@ -151,11 +152,11 @@ fn table(lines: &[Line], criteria: &[Criterion], speeds: &[f64]) -> String {
     }
     text.push('\n');
     for speed in speeds {
-        text += &format!("{speed:>8.3}");
+        text += &format!("{:>8}", decimal(*speed, 3));
         for c in 0..criteria.len() {
             for line in lines {
                 let cost = line.results[c].iter().find(|r| r.speed == *speed).and_then(|r| r.cost);
-                text += &format!(" {:>16}", cost.map_or("-".into(), |cost| format!("{cost:.4}")));
+                text += &format!(" {:>16}", cost.map_or("-".into(), |cost| decimal(cost, 4)));
             }
         }
         text.push('\n');

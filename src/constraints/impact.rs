@@ -5,14 +5,16 @@
 use super::sharing::{applies, first, length, offsets, second};
 use crate::model::Description;
 use crate::number::Scalar;
+use crate::units::Units;
 
 /// Formulas on the results of a touchdown kernel.
 #[derive(Clone, Debug)]
 pub struct ImpactConstraints<T = f64> {
     friction: T,
     lateral: bool,
-    /// Unit of an impulse: total mass times 1 m/s.
+    /// The robot's units of an impulse and of a velocity.
     unit: f64,
+    speed: f64,
     components: usize,
     /// The real feet that land, from the virtual foot along Xf, if their limits count.
     feet: Vec<f64>,
@@ -21,10 +23,12 @@ pub struct ImpactConstraints<T = f64> {
 impl<T: Scalar> ImpactConstraints<T> {
     /// With this coefficient of friction.
     pub fn with(description: &Description, friction: T) -> ImpactConstraints<T> {
+        let units = Units::new(description);
         ImpactConstraints {
             friction,
             lateral: description.lateral,
-            unit: description.total_mass(),
+            unit: units.impulse(),
+            speed: units.speed(),
             components: description.positions(),
             feet: if applies(description) { offsets(description) } else { Vec::new() },
         }
@@ -53,7 +57,7 @@ impl<T: Scalar> ImpactConstraints<T> {
         let over = 0.5 / self.feet[foot];
         let vertical = y(1).scale(0.5) + y(3).scale(over);
         let lateral = y(2).scale(0.5) + y(4).scale(over);
-        friction * vertical - length([y(0).scale(0.5), lateral])
+        friction * vertical - length([y(0).scale(0.5), lateral], self.unit)
     }
 
     /// Where impulse and couple stand among a touchdown's results.
@@ -72,7 +76,7 @@ impl<T: Scalar> ImpactConstraints<T> {
             (1, true) => (mu * y[1] - norm(y)) / unit,
             (1, false) => (mu * y[1] + y[0]) / unit,
             (2, false) => (mu * y[1] - y[0]) / unit,
-            _ => y[self.components],
+            _ => y[self.components] / T::from(self.speed),
         }
     }
 }
@@ -93,7 +97,7 @@ impl ImpactConstraints {
         match (i, self.lateral) {
             (0, _) => add(1, 1.0 / self.unit),
             (1, true) => {
-                let norm = norm(y).max(TINY);
+                let norm = norm(y).max(TINY * self.unit);
                 add(0, -y[0] / norm / self.unit);
                 add(2, -y[2] / norm / self.unit);
                 add(1, mu);
@@ -102,7 +106,7 @@ impl ImpactConstraints {
                 add(1, mu);
                 add(0, if i == 1 { 1.0 } else { -1.0 } / self.unit);
             }
-            _ => add(self.components, 1.0),
+            _ => add(self.components, 1.0 / self.speed),
         }
     }
 
@@ -119,7 +123,7 @@ impl ImpactConstraints {
         if !(self.lateral && i == 1) {
             return;
         }
-        let norm = norm(y).max(TINY);
+        let norm = norm(y).max(TINY * self.unit);
         for a in [0, 2] {
             for b in [0, 2] {
                 let unit = if a == b { 1.0 } else { 0.0 };
@@ -129,8 +133,8 @@ impl ImpactConstraints {
     }
 }
 
-/// Below this a tangential impulse (N·s) has no direction.
-const TINY: f64 = 1e-12;
+/// Below this share of its unit a tangential impulse has no direction.
+const TINY: f64 = 1e-13;
 
 /// Norm of the tangential part of an impulse in space.
 fn norm<T: Scalar>(y: &[T]) -> T {

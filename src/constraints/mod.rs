@@ -86,7 +86,7 @@ impl PathConstraint {
             Form::Linear { terms, .. } => terms.iter().for_each(|(q, c)| add(*q, c / self.unit)),
             Form::Cone { normal, factor, tangential } => {
                 add(*normal, factor / self.unit);
-                let norm = norm(y, tangential).max(TINY);
+                let norm = norm(y, tangential).max(TINY * self.unit);
                 for q in tangential {
                     add(*q, -y[*q] / norm / self.unit);
                 }
@@ -102,7 +102,7 @@ impl PathConstraint {
             Form::Share(share) => return share.curvature(y, |a, b, second| add(a, b, second / self.unit)),
             Form::Cone { tangential, .. } => tangential,
         };
-        let norm = norm(y, tangential).max(TINY);
+        let norm = norm(y, tangential).max(TINY * self.unit);
         for a in tangential {
             for b in tangential {
                 let unit = if a == b { 1.0 } else { 0.0 };
@@ -112,8 +112,8 @@ impl PathConstraint {
     }
 }
 
-/// Below this a tangential force (N) has no direction.
-const TINY: f64 = 1e-9;
+/// Below this share of its unit a tangential force has no direction.
+const TINY: f64 = 1e-11;
 
 fn norm<T: Scalar>(y: &[T], quantities: &[usize]) -> T {
     quantities.iter().fold(T::zero(), |sum, q| sum + y[*q] * y[*q]).sqrt()

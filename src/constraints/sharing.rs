@@ -17,7 +17,7 @@ use crate::instant::{Quantities, Shared};
 use crate::model::{Description, HalfSteps, Leg};
 use crate::number::{Dual, Scalar};
 
-/// Mounts nearer than this are at one place, m.
+/// Mounts nearer than this share of a leg are at one place.
 const SAME: f64 = 1e-9;
 
 /// Whether real legs need constraints of their own: asked for, and not settled by an equal share.
@@ -27,8 +27,9 @@ pub fn applies(d: &Description) -> bool {
 
 /// Whether impacts can pitch the robot, so that it must be forbidden: hips off the mass centre or rotors make them.
 pub fn pitches(d: &Description) -> bool {
+    let same = SAME * d.leg_length();
     let hips = d.bodies.iter().filter(|b| b.parent == Some(0));
-    let level = hips.flat_map(|b| &b.offset[..2]).all(|x| x.abs() < SAME);
+    let level = hips.flat_map(|b| &b.offset[..2]).all(|x| x.abs() < same);
     let rotors = d.joints.iter().any(|j| j.rotor_inertia != 0.0);
     applies(d) && (!level || rotors)
 }
@@ -44,10 +45,11 @@ pub fn obstacle(d: &Description) -> Option<String> {
             d.gait
         ));
     }
+    let same = SAME * d.leg_length();
     let apart = |leg: &Leg| {
         let [a, b] = leg.members.as_ref() else { return false };
         let [a, b] = [a.mount(), b.mount()];
-        (a[0] - b[0]).abs() > SAME && (a[1] - b[1]).abs() < SAME && (a[2] - b[2]).abs() < SAME
+        (a[0] - b[0]).abs() > same && (a[1] - b[1]).abs() < same && (a[2] - b[2]).abs() < same
     };
     (!d.legs.iter().all(apart)).then(|| {
         format!(
@@ -70,6 +72,8 @@ pub struct Share<T = f64> {
     quantities: [usize; COUNT],
     /// The foot from the virtual foot, along Xf, m.
     offset: f64,
+    /// The robot's weight, N.
+    weight: f64,
     of: Of<T>,
 }
 
@@ -103,7 +107,7 @@ pub fn constraints<T: Scalar>(d: &Description, limits: &Limits<T>, y: &Quantitie
     let share = 1.0 / leg.members.len() as f64;
     for (member, offset) in leg.members.iter().zip(offsets(d)) {
         let mut add = |name: String, unit: f64, joint: usize, of: Of<T>| {
-            let form = Form::Share(Share { quantities: quantities(d, y, joint), offset, of });
+            let form = Form::Share(Share { quantities: quantities(d, y, joint), offset, weight, of });
             list.push(PathConstraint { name: format!("{name} of {}", member.name), form, unit, at_start: true });
         };
         add("vertical force".into(), weight, 0, Of::Vertical(limits.min_vertical_force.scale(share)));
@@ -129,7 +133,8 @@ pub fn constraints<T: Scalar>(d: &Description, limits: &Limits<T>, y: &Quantitie
 pub fn torques(d: &Description, y: &Quantities) -> Vec<(usize, Share)> {
     let of_foot = |offset: f64| {
         let leg = &d.legs[0];
-        let share = move |k: usize| Share { quantities: quantities(d, y, k), offset, of: Of::Torque };
+        let weight = d.total_mass() * d.gravity;
+        let share = move |k: usize| Share { quantities: quantities(d, y, k), offset, weight, of: Of::Torque };
         (leg.first_joint..leg.end_joint).enumerate().map(move |(k, j)| (j, share(k)))
     };
     offsets(d).into_iter().flat_map(of_foot).collect()
@@ -152,7 +157,7 @@ fn quantities(d: &Description, y: &Quantities, joint: usize) -> [usize; COUNT] {
 }
 
 impl<T: Scalar> Of<T> {
-    fn value(self, offset: f64, v: &[T; COUNT]) -> T {
+    fn value(self, offset: f64, weight: f64, v: &[T; COUNT]) -> T {
         let over = 0.5 / offset;
         let vertical = v[FORCE + 1].scale(0.5) + v[MOMENT + 1].scale(over);
         let lateral = v[FORCE + 2].scale(0.5) - v[MOMENT].scale(over);
@@ -167,7 +172,7 @@ impl<T: Scalar> Of<T> {
         match self {
             Of::Torque => torque_of_joint(),
             Of::Vertical(least) => vertical - least,
-            Of::Friction(mu) => mu * vertical - length([forward, lateral]),
+            Of::Friction(mu) => mu * vertical - length([forward, lateral], weight),
             Of::Actuator { bound, torque, rate } => bound - torque * torque_of_joint() - v[RATE].scale(rate),
         }
     }
@@ -175,7 +180,7 @@ impl<T: Scalar> Of<T> {
 
 impl<T: Scalar> Share<T> {
     pub fn value(&self, y: &[T]) -> T {
-        self.of.value(self.offset, &self.quantities.map(|q| y[q]))
+        self.of.value(self.offset, self.weight, &self.quantities.map(|q| y[q]))
     }
 }
 
@@ -188,7 +193,7 @@ impl Share {
             Of::Friction(mu) => Of::Friction(T::from(mu)),
             Of::Actuator { bound, torque, rate } => Of::Actuator { bound: bound.into(), torque: torque.into(), rate },
         };
-        of.value(self.offset, v)
+        of.value(self.offset, self.weight, v)
     }
 
     /// Calls `add(quantity, partial derivative)`.
@@ -210,11 +215,12 @@ impl Share {
     }
 }
 
-/// Length of a tangential vector; where it vanishes it has a derivative all the same, zero.
-pub fn length<T: Scalar>(v: [T; 2]) -> T {
-    /// Too small to matter, N or N·s.
-    const TINY: f64 = 1e-12;
-    (v[0] * v[0] + v[1] * v[1] + T::from(TINY * TINY)).sqrt()
+/// Length of a tangential vector; where it vanishes beside its unit it has a derivative all the same, zero.
+pub fn length<T: Scalar>(v: [T; 2], unit: f64) -> T {
+    /// Too small a share of the unit to matter.
+    const TINY: f64 = 1e-14;
+    let tiny = TINY * unit;
+    (v[0] * v[0] + v[1] * v[1] + T::from(tiny * tiny)).sqrt()
 }
 
 /// Gradient of a short formula.

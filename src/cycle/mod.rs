@@ -22,6 +22,7 @@ use crate::lgl::NODES;
 use crate::model::{Description, Gait, HalfSteps};
 use crate::motion::{Costs, Criterion, HalfStep, Motion};
 use crate::stance::Undefined;
+use crate::units::Units;
 use dip::Dip;
 use hessian::Workspace;
 use phase::Phase;
@@ -35,10 +36,22 @@ pub fn elements(d: &Description) -> usize {
     d.polynomial_order + 1
 }
 
-/// Elements are halved where that changes β (rad) or β̇ (rad/s) at the end of a half step by more than this,
-const RESOLUTION: f64 = 5e-7;
+/// Elements are halved where that changes β or β̇ at the end of a half step by more than this, in the robot's units, or at low
+/// speeds by more than this times twice the speed: the travel has to be the one asked, however short it is;
+const RESOLUTION: f64 = 1e-7;
 /// until there are so many times as many.
 const FINEST: usize = 8;
+
+/// Natural sizes of the variables, in the robot's units: angles, rates, durations.
+const ANGLE: f64 = 0.3;
+const RATE: f64 = 0.525;
+const DURATION: f64 = 0.57;
+
+/// A half step shorter than this, in the robot's unit of time, is no motion.
+const SHORTEST: f64 = 5e-4;
+
+/// Speeds below this, in the robot's unit, are met as closely as positions are known, not as closely as others.
+const SLOWEST: f64 = 1e-7;
 
 /// The optimization problem of one gait, criterion and speed.
 pub struct Cycle<'a> {
@@ -46,21 +59,23 @@ pub struct Cycle<'a> {
     pub criterion: Criterion,
     /// Mean forward speed, m/s.
     pub speed: f64,
-    /// Rounds off the kinks of |power|, W; 0 for the criterion itself.
+    /// Rounds off the kinks of |power|, in the robot's unit of power; 0 for the criterion itself.
     pub smoothing: f64,
+    units: Units,
     variables: Variables,
     phases: Vec<Phase>,
     path: Vec<PathConstraint>,
     impact: ImpactConstraints,
-    /// Forward travel in all half steps, m.
+    /// Forward travel in all half steps, m, and how long they take, s.
     travel: f64,
+    duration: f64,
 
     // Derivatives of the last linearization, in Θ.
     linearized: Vec<f64>,
     /// How far it lies from the one before: the reach of the model that is built from it.
     moved: Vec<f64>,
-    cost: f64,
     cost_gradient: Vec<f64>,
+    duration_gradient: Vec<f64>,
     travel_gradient: Vec<f64>,
     equality_rows: Vec<f64>,
     impact_rows: Vec<f64>,
@@ -156,10 +171,11 @@ impl<'a> Cycle<'a> {
             criterion,
             speed,
             smoothing: 0.0,
+            units: Units::new(d),
             linearized: Vec::with_capacity(n),
             moved: vec![0.0; n],
-            cost: 0.0,
             cost_gradient: vec![0.0; n],
+            duration_gradient: vec![0.0; n],
             travel_gradient: vec![0.0; n],
             equality_rows: vec![0.0; n * problem::equalities(d)],
             impact_rows: vec![0.0; n * d.phases() * impact.count()],
@@ -169,6 +185,7 @@ impl<'a> Cycle<'a> {
             path: path_constraints(d),
             impact,
             travel: 0.0,
+            duration: 0.0,
         }
     }
 
@@ -193,7 +210,8 @@ impl<'a> Cycle<'a> {
 
     /// The problem with twice as many elements, if these do not resolve the last simulated motion.
     pub fn finer(&self) -> Option<Cycle<'a>> {
-        let coarse = |p: &Phase| p.mesh_error(self.gait).is_ok_and(|error| error > RESOLUTION);
+        let resolution = RESOLUTION * (2.0 * self.froude()).min(1.0);
+        let coarse = |p: &Phase| p.mesh_error(self.gait, &self.units).is_ok_and(|error| error > resolution);
         self.twice_as_fine().filter(|_| self.phases.iter().any(coarse))
     }
 
@@ -260,13 +278,13 @@ impl<'a> Cycle<'a> {
 
     /// Natural size of each variable: rad, rad/s, s.
     pub fn scale(&self) -> Vec<f64> {
-        let v = &self.variables;
+        let (v, units) = (&self.variables, &self.units);
         let mut scale = Vec::new();
         for _ in 0..v.phases {
-            scale.extend(std::iter::repeat_n(0.3, v.orientations));
-            scale.extend(std::iter::repeat_n(3.0, v.orientations));
-            scale.extend(std::iter::repeat_n(0.3, v.prescribed * v.interior));
-            scale.push(0.1);
+            scale.extend(std::iter::repeat_n(ANGLE, v.orientations));
+            scale.extend(std::iter::repeat_n(RATE * units.rate(), v.orientations));
+            scale.extend(std::iter::repeat_n(ANGLE, v.prescribed * v.interior));
+            scale.push(DURATION * units.time);
         }
         scale
     }
@@ -330,7 +348,7 @@ impl<'a> Cycle<'a> {
         for (k, phase) in self.phases.iter_mut().enumerate() {
             phase.end(self.gait, &self.variables, own(k));
         }
-        self.travel = 0.0;
+        (self.travel, self.duration) = (0.0, 0.0);
         for k in 0..self.phases.len() {
             let before = self.before(k);
             for row in 0..d.orientations() {
@@ -342,34 +360,61 @@ impl<'a> Cycle<'a> {
             let phase = &mut self.phases[k];
             phase.set_parameters(self.gait, &self.variables, own(k));
             let t = phase.duration();
-            if t.is_nan() || t < 1e-4 {
+            if t.is_nan() || t < SHORTEST * self.units.time {
                 return Err(Undefined::NotFinite);
             }
             phase.stance.integrate(self.gait, phase.leg, &phase.mesh, &phase.parameters)?;
             phase.instants.evaluate(self.gait, phase.leg, &phase.mesh, &phase.stance, &phase.parameters);
-            integrate(self.criterion, self.smoothing, &phase.mesh, &phase.instants, &mut phase.cost);
+            let smoothing = self.smoothing * self.units.power();
+            integrate(self.criterion, smoothing, &phase.mesh, &phase.instants, &mut phase.cost);
             phase.travel = phase.instants.platform(d, phase.last())[0] - phase.instants.platform(d, 0)[0];
             self.travel += phase.travel;
+            self.duration += t;
         }
         Ok(())
     }
 
-    /// Partial derivatives of the criterion's integral over a half step in the quantities of its nodes: node, quantity,
-    /// derivative.
-    pub fn work_partials(&self, phase: usize) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+    /// Partial derivatives of the objective in the quantities of the nodes of a half step: node, quantity, derivative.
+    pub fn objective_partials(&self, phase: usize) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
         let p = &self.phases[phase];
-        let t = p.duration();
-        p.cost.partials.iter().map(move |(node, quantity, partial)| (*node, *quantity, t * partial))
+        let share = p.duration() * self.per_work();
+        p.cost.partials.iter().map(move |(node, quantity, partial)| (*node, *quantity, share * partial))
     }
 
-    /// Forward travel in all half steps of the last simulated motion, m.
-    pub fn travel(&self) -> f64 {
-        self.travel
+    /// The criterion per metre of travel, where the objective is 1 and the mean speed the one asked.
+    pub fn criterion_per_objective(&self) -> f64 {
+        self.units.integrand(self.criterion) / self.speed.abs()
+    }
+
+    /// The speed asked for in the robot's unit, without its sign, as far as it can be told from none.
+    fn froude(&self) -> f64 {
+        (self.speed / self.units.speed()).abs().max(SLOWEST)
+    }
+
+    /// Travel at the speed asked for in the last simulated motion, m.
+    pub fn asked_travel(&self) -> f64 {
+        self.speed * self.duration
+    }
+
+    /// The robot's units.
+    pub fn units(&self) -> &Units {
+        &self.units
     }
 
     /// Integral of the criterion's integrand over the whole motion.
     fn work(&self) -> f64 {
         self.phases.iter().map(|p| p.duration() * p.cost.value).sum()
+    }
+
+    /// The objective is the mean of the criterion's integrand over time: at a given mean speed it is the criterion per metre
+    /// but for a factor, and it stays what it is where the speed vanishes and metres cost infinitely much.
+    fn objective(&self) -> f64 {
+        self.work() * self.per_work()
+    }
+
+    /// What a unit of work adds to the objective.
+    fn per_work(&self) -> f64 {
+        1.0 / (self.duration * self.units.integrand(self.criterion))
     }
 
     /// Both criteria of the last simulated motion.
@@ -382,7 +427,8 @@ impl<'a> Cycle<'a> {
                 integrate(criterion, 0.0, &p.mesh, &p.instants, &mut integral);
                 sum += p.duration() * integral.value;
             }
-            sum / self.travel
+            // Backwards, too, metres cost.
+            sum / self.travel.abs()
         };
         Costs { energy: of(Criterion::Energy), torque: of(Criterion::Torque) }
     }

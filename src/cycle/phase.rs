@@ -8,6 +8,7 @@ use crate::instant::{Glance, Instants};
 use crate::lgl::NODES;
 use crate::model::{Description, Gait};
 use crate::stance::{Layout, Mesh, Stance, Undefined};
+use crate::units::Units;
 
 /// Length of a touchdown's couple and pitch, which come after everything else.
 const SHARED: usize = 3;
@@ -102,15 +103,15 @@ impl Phase {
         glance.at(gait, self.leg, &self.mesh, &self.stance, &self.parameters, s)
     }
 
-    /// What a mesh twice as fine changes in β (rad) and β̇ (rad/s) at the end of the last simulated motion.
-    pub fn mesh_error(&self, gait: &dyn Gait) -> Result<f64, Undefined> {
+    /// What a mesh twice as fine changes in β and β̇ at the end of the last simulated motion, in the robot's units.
+    pub fn mesh_error(&self, gait: &dyn Gait, units: &Units) -> Result<f64, Undefined> {
         let d = gait.description();
         let mesh = Mesh::new(2 * self.mesh.elements, d.polynomial_order);
         let mut finer = Stance::new(d, &mesh, self.leg);
         finer.integrate(gait, self.leg, &mesh, &self.parameters)?;
         let (here, there) = (self.last(), mesh.nodes.len() - 1);
         let change = |of: fn(&Stance) -> &[f64]| (of(&finer)[there] - of(&self.stance)[here]).abs();
-        Ok(change(|s| &s.beta).max(change(|s| &s.betad)))
+        Ok(change(|s| &s.beta).max(change(|s| &s.betad) / units.rate()))
     }
 
     /// Where a path constraint is lowest in an element of the last simulated motion, as the quartic has it, near `from`.

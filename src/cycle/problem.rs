@@ -27,11 +27,6 @@ pub fn pitch(d: &Description) -> usize {
     d.positions() + 2 + 2
 }
 
-/// Unit of an angular momentum: the robot on a stretched leg at 1 m/s.
-pub fn pitch_unit(d: &Description) -> f64 {
-    d.total_mass() * d.leg_length()
-}
-
 /// What an inequality row is.
 enum Row {
     Path { phase: usize, node: usize, constraint: usize },
@@ -176,13 +171,18 @@ impl Cycle<'_> {
     /// Which equality `i` is, in words.
     pub fn equality_label(&self, i: usize) -> Label {
         let names = ["closure of β", "closure of σ", "touchdown height"];
-        let speed = CLOSURE * self.phases.len();
+        let speed = self.speed_equation();
         let (name, phase) = match i {
             _ if i < speed => (names[i % CLOSURE], i / CLOSURE),
             _ if i == speed => return Label { name: "mean speed".into(), half_step: self.phases.len(), time: 0.0 },
             _ => ("pitching at the impact on real feet", i - speed - 1),
         };
         Label { name: name.into(), half_step: phase + 1, time: self.phases[phase].duration() }
+    }
+
+    /// The equality that is the mean speed.
+    pub fn speed_equation(&self) -> usize {
+        CLOSURE * self.phases.len()
     }
 
     /// Which variable's bound `i` is, in words: only durations are bounded.
@@ -212,13 +212,15 @@ impl Cycle<'_> {
         }
     }
 
-    /// d(work/travel) = (d work − cost d travel)/travel
+    /// d(work/duration) = (d work − mean d duration)/duration
     fn differentiate_cost(&mut self) {
-        self.cost = self.work() / self.travel;
+        let (per_work, mean) = (self.per_work(), self.work() / self.duration);
         self.cost_gradient.fill(0.0);
+        self.duration_gradient.fill(0.0);
         self.travel_gradient.fill(0.0);
+        let m = self.variables.per_phase();
         let local = &mut self.workspace.local;
-        for p in &self.phases {
+        for (k, p) in self.phases.iter().enumerate() {
             let t = p.duration();
             local.fill(0.0);
             for (node, quantity, partial) in &p.cost.partials {
@@ -226,11 +228,9 @@ impl Cycle<'_> {
                     *l += t * partial * g;
                 }
             }
-            local[p.layout.duration()] += p.cost.value;
-            for (l, g) in local.iter_mut().zip(&p.travel_p) {
-                *l -= self.cost * g;
-            }
-            p.project(local, 1.0 / self.travel, &mut self.cost_gradient);
+            local[p.layout.duration()] += p.cost.value - mean;
+            p.project(local, per_work, &mut self.cost_gradient);
+            self.duration_gradient[k * m + self.variables.duration()] = 1.0;
             p.project(&p.travel_p, 1.0, &mut self.travel_gradient);
         }
     }
@@ -238,6 +238,8 @@ impl Cycle<'_> {
     fn differentiate_equalities(&mut self) {
         let d = self.description();
         let (nq, n, m) = (d.orientations(), self.variables.total(), self.variables.per_phase());
+        let units = self.units;
+        let (length, momentum) = (units.length, units.angular_momentum());
         self.equality_rows.fill(0.0);
         let mut rows = self.equality_rows.chunks_mut(n);
         for (k, p) in self.phases.iter().enumerate() {
@@ -249,32 +251,32 @@ impl Cycle<'_> {
                 row[own(self.variables.q(d.unactuated))] -= 1.0;
             }
             if let Some(row) = rows.next() {
-                p.project(&p.stance.sigma_p[last..last + np], 1.0, row);
+                p.project(&p.stance.sigma_p[last..last + np], 1.0 / momentum, row);
                 for j in 0..nq {
-                    row[own(self.variables.q(j))] -= p.momentum_end[1 + j];
-                    row[own(self.variables.qd(j))] -= p.momentum_end[1 + nq + j];
+                    row[own(self.variables.q(j))] -= p.momentum_end[1 + j] / momentum;
+                    row[own(self.variables.qd(j))] -= p.momentum_end[1 + nq + j] / momentum;
                 }
             }
             if let Some(row) = rows.next() {
                 for (j, g) in p.landing_gradient(d).iter().enumerate() {
-                    row[own(self.variables.q(j))] += g / d.leg_length();
+                    row[own(self.variables.q(j))] += g / length;
                 }
             }
         }
         if let Some(row) = rows.next() {
             for (r, g) in row.iter_mut().zip(&self.travel_gradient) {
-                *r = g / d.leg_length();
+                *r = g / length;
             }
             for k in 0..self.phases.len() {
-                row[k * m + self.variables.duration()] -= self.speed / d.leg_length();
+                row[k * m + self.variables.duration()] -= self.speed / length;
             }
         }
-        let (pitch, unit) = (nq + pitch(d), pitch_unit(d));
+        let pitch = nq + pitch(d);
         for (k, (p, row)) in self.phases.iter().zip(rows).enumerate() {
             let jacobian = p.touchdown_row(d, pitch);
             for j in 0..nq {
-                row[k * m + self.variables.q(j)] += jacobian[j] / unit;
-                row[k * m + self.variables.qd(j)] += jacobian[nq + j] / unit;
+                row[k * m + self.variables.q(j)] += jacobian[j] / momentum;
+                row[k * m + self.variables.qd(j)] += jacobian[nq + j] / momentum;
             }
         }
     }
@@ -321,22 +323,26 @@ impl Problem for Cycle<'_> {
         }
     }
 
+    /// The mean speed is met relative to the speed asked.
+    fn strictness(&self, i: usize) -> f64 {
+        if i == self.speed_equation() { self.froude().min(1.0) } else { 1.0 }
+    }
+
     fn evaluate(&mut self, x: &[f64], out: &mut Values) -> Result<(), Undefined> {
         self.simulate(x).map_err(|_| sqp::Undefined)?;
         let d = self.description();
-        out.objective = self.work() / self.travel;
-        let mut duration = 0.0;
+        let units = &self.units;
+        out.objective = self.objective();
         for (k, p) in self.phases.iter().enumerate() {
             let equalities = &mut out.equalities[k * CLOSURE..][..CLOSURE];
             equalities[0] = p.stance.beta[p.last()] - p.q_end[d.unactuated];
-            equalities[1] = p.stance.sigma[p.last()] - p.momentum_end[0];
-            equalities[2] = p.placement[d.positions() + 1] / d.leg_length();
-            duration += p.duration();
+            equalities[1] = (p.stance.sigma[p.last()] - p.momentum_end[0]) / units.angular_momentum();
+            equalities[2] = p.placement[d.positions() + 1] / units.length;
         }
-        let (speed, pitching) = (CLOSURE * self.phases.len(), CLOSURE * self.phases.len() + 1);
-        out.equalities[speed] = (self.travel - self.speed * duration) / d.leg_length();
+        let (speed, pitching) = (self.speed_equation(), self.speed_equation() + 1);
+        out.equalities[speed] = (self.travel - self.asked_travel()) / units.length;
         for (slot, p) in out.equalities[pitching..].iter_mut().zip(&self.phases) {
-            *slot = p.impact[pitch(d)] / pitch_unit(d);
+            *slot = p.impact[pitch(d)] / units.angular_momentum();
         }
         let mut slots = out.inequalities.iter_mut();
         for p in &self.phases {

@@ -4,22 +4,34 @@ use super::frame;
 use super::xml::{Xml, numbers};
 use crate::model::Rotation;
 use crate::model::{Body, Description, Leg, Member};
+use crate::units::Units;
 use crate::walk::{Moment, Walk};
 
-/// Links can be slender rods without inertia about themselves; MuJoCo wants some.
+/// Links can be slender rods without inertia about themselves; MuJoCo wants some: this share of the robot's mass times the square
+/// of its leg.
 const LEAST_INERTIA: f64 = 1e-9;
-/// Radius of the feet, which are points here, m.
-const FOOT: f64 = 0.004;
+/// Radii of the feet and the links, which are points and lines here, and half the platform's height, as shares of the leg.
+const FOOT: f64 = 1.0 / 75.0;
+const LINK: f64 = 2.0 / 75.0;
+const PLATFORM: f64 = 1.0 / 15.0;
+/// Time step as a share of √(leg/gravity).
+const TIME_STEP: f64 = 3e-3;
+
+/// A number that need not be exact.
+fn about(x: f64) -> String {
+    format!("{x:.1e}").parse().unwrap_or(x).to_string()
+}
 
 pub fn mjcf(walk: &Walk) -> String {
     let d = walk.description;
     let mut xml = Xml::new();
     xml.element("mujoco", &[("model", d.robot.into())], |x| {
         x.comment("Axes: x forward, y left, z up. Torques are those of one real leg's joint.");
-        let compiler =
-            [("angle", "radian".into()), ("autolimits", "true".into()), ("boundinertia", LEAST_INERTIA.to_string())];
+        let units = Units::new(d);
+        let least = about(LEAST_INERTIA * units.inertia());
+        let compiler = [("angle", "radian".into()), ("autolimits", "true".into()), ("boundinertia", least)];
         x.leaf("compiler", &compiler);
-        x.leaf("option", &[("gravity", numbers(&[0.0, 0.0, -d.gravity])), ("timestep", "0.0005".into())]);
+        x.leaf("option", &[("gravity", numbers(&[0.0, 0.0, -d.gravity])), ("timestep", about(TIME_STEP * units.time))]);
         let links = [("contype", "0".into()), ("conaffinity", "0".into()), ("rgba", "0.6 0.65 0.7 1".into())];
         x.element("default", &[], |x| x.leaf("geom", &links));
         x.element("worldbody", &[], |x| {
@@ -71,14 +83,14 @@ fn inertial(x: &mut Xml, mass: f64, com: [f64; 3], inertia: &[[f64; 3]; 3]) {
 }
 
 fn platform(x: &mut Xml, d: &Description) {
-    let body = &d.bodies[0];
+    let (body, length) = (&d.bodies[0], d.leg_length());
     x.element("body", &[("name", body.name.into())], |x| {
         x.leaf("freejoint", &[("name", "base".into())]);
         inertial(x, body.mass, body.com, &body.inertia);
         let mounts: Vec<[f64; 3]> =
             d.legs.iter().flat_map(|l| l.members.iter()).map(|m| frame::vector(m.mount())).collect();
-        let half = |k: usize| mounts.iter().map(|m| m[k].abs()).fold(0.01, f64::max);
-        x.leaf("geom", &[("type", "box".into()), ("size", numbers(&[half(0), half(1), 0.02]))]);
+        let half = |k: usize| mounts.iter().map(|m| m[k].abs()).fold(0.5 * PLATFORM * length, f64::max);
+        x.leaf("geom", &[("type", "box".into()), ("size", numbers(&[half(0), half(1), PLATFORM * length]))]);
         for leg in &d.legs {
             for member in leg.members.iter() {
                 limb(x, d, leg, member, &member.bodies, &member.joints);
@@ -104,12 +116,12 @@ fn limb(x: &mut Xml, d: &Description, leg: &Leg, member: &Member, bodies: &[Body
         x.leaf("joint", &attributes);
         inertial(x, body.mass, body.com, &body.inertia);
         let bone = numbers(&[[0.0; 3], end].concat());
-        x.leaf("geom", &[("type", "capsule".into()), ("fromto", bone), ("size", "0.008".into())]);
+        x.leaf("geom", &[("type", "capsule".into()), ("fromto", bone), ("size", about(LINK * d.leg_length()))]);
         if rest.is_empty() {
             x.leaf("site", &[("name", super::foot_name(d, member)), ("pos", numbers(&end))]);
             let foot = [
                 ("type", "sphere".into()),
-                ("size", FOOT.to_string()),
+                ("size", about(FOOT * d.leg_length())),
                 ("pos", numbers(&end)),
                 ("contype", "1".into()),
                 ("conaffinity", "1".into()),

@@ -4,6 +4,7 @@
 //! the robot with the given values, and can tell how what it computes depends on them.
 
 use super::{Body, Description, Gait, HalfSteps, Leg, Rotation};
+use crate::units::Units;
 use nalgebra::Matrix3;
 
 /// A number of the real robot that distinguishes the members of a family.
@@ -191,8 +192,9 @@ impl Description {
         };
         let rolls = self.rotation == Rotation::Roll;
         let [first, second] = &self.legs;
+        let units = Units::new(self);
         for (a, b) in bodies(first).zip(bodies(second)) {
-            if !same(&seen(a, rolls, 1.0), &seen(b, rolls, -1.0)) {
+            if !same(&seen(a, &units, rolls, 1.0), &seen(b, &units, rolls, -1.0)) {
                 return Err(Unfit::Mirror { gait: self.gait, first: a.name, second: b.name });
             }
         }
@@ -200,11 +202,12 @@ impl Description {
     }
 }
 
-/// What of a body matters: all of it if the platform rolls, with `side` ±1 for the side on which z points
+/// What of a body matters, in the robot's units: all of it if the platform rolls, with `side` ±1 for the side on which z points
 /// outward; else what shows from the side.
-fn seen(body: &Body, rolls: bool, side: f64) -> Vec<f64> {
-    let (offset, com, inertia) = (body.offset, body.com, body.inertia);
-    let mut numbers = vec![body.mass, offset[0], offset[1], com[0], com[1], inertia[2][2]];
+fn seen(body: &Body, units: &Units, rolls: bool, side: f64) -> Vec<f64> {
+    let [offset, com] = [body.offset, body.com].map(|v| v.map(|x| x / units.length));
+    let inertia = body.inertia.map(|row| row.map(|x| x / units.inertia()));
+    let mut numbers = vec![body.mass / units.mass, offset[0], offset[1], com[0], com[1], inertia[2][2]];
     if rolls {
         numbers.extend([side * offset[2], side * com[2], side * inertia[0][2], side * inertia[1][2]]);
         numbers.extend([inertia[0][0], inertia[1][1], inertia[0][1]]);

@@ -23,7 +23,8 @@ const FREE: f64 = 1e-6;
 /// The first-order conditions at a motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Optimality {
-    /// What the multipliers leave of the criterion's gradient, relative to max(1, ‖∇C‖∞), in scaled variables.
+    /// What the multipliers leave of the objective's gradient, relative to max(1, ‖∇f‖∞), in scaled variables: f is the mean of
+    /// the criterion's integrand over time, in a natural unit.
     pub stationarity: f64,
     /// Largest product of a multiplier with its constraint's distance from zero, in the same measure.
     pub complementarity: f64,
@@ -43,7 +44,7 @@ pub struct Price {
     pub half_step: usize,
     /// s.
     pub time: f64,
-    /// Criterion per natural unit of the constraint (s for durations); of limits positive.
+    /// Criterion per natural unit of the constraint, that of durations √(leg/gravity); of limits positive.
     pub value: f64,
 }
 
@@ -71,9 +72,15 @@ impl Optimality {
 /// As for [`Linearized::new`].
 pub fn optimality(gait: &dyn Gait, criterion: Criterion, speed: f64, motion: &Motion) -> Result<Optimality, Undefined> {
     let Linearized { cycle, multipliers, .. } = Linearized::new(gait, criterion, speed, motion)?;
-    let equations = prices(&multipliers.equalities, |i| cycle.equality_label(i));
-    let mut limits = prices(&multipliers.inequalities, |i| cycle.label(i));
-    limits.extend(prices(&multipliers.bounds, |i| cycle.bound_label(i)).into_iter().map(Price::of_bound));
+    let criterion = cycle.criterion_per_objective();
+    let mut multipliers_of_equations = multipliers.equalities.clone();
+    // More travel than asked for is also what the criterion is divided by.
+    multipliers_of_equations[cycle.speed_equation()] -=
+        multipliers.values.objective * cycle.units().length / cycle.asked_travel();
+    let equations = prices(&multipliers_of_equations, criterion, |i| cycle.equality_label(i));
+    let mut limits = prices(&multipliers.inequalities, criterion, |i| cycle.label(i));
+    let time = criterion * cycle.units().time;
+    limits.extend(prices(&multipliers.bounds, time, |i| cycle.bound_label(i)).into_iter().map(Price::of_bound));
     limits.sort_by(|a, b| b.value.abs().total_cmp(&a.value.abs()));
     let largest = limits.first().map_or(0.0, |p| p.value.abs());
     limits.retain(|p| p.value.abs() > NEGLIGIBLE * largest);
@@ -95,10 +102,11 @@ impl Price {
     }
 }
 
-fn prices(values: &[f64], label: impl Fn(usize) -> Label) -> Vec<Price> {
+/// Multipliers of the objective as prices in a unit.
+fn prices(values: &[f64], unit: f64, label: impl Fn(usize) -> Label) -> Vec<Price> {
     let price = |(i, value): (usize, &f64)| {
         let Label { name, half_step, time } = label(i);
-        Price { constraint: name, half_step, time, value: *value }
+        Price { constraint: name, half_step, time, value: unit * value }
     };
     values.iter().enumerate().filter(|(_, value)| **value != 0.0).map(price).collect()
 }

@@ -8,10 +8,11 @@ use super::multi_start::Settings;
 use crate::model::Gait;
 use crate::motion::Criterion;
 use crate::result::GaitResult;
+use crate::units::Units;
 use serde::{Deserialize, Serialize};
 
-/// Width to which a crossing is bisected, m/s.
-const BISECTION: f64 = 1e-4;
+/// Width to which a crossing is bisected, in the robot's unit of speed.
+const BISECTION: f64 = 5e-5;
 
 /// Two gaits over the speeds at which both go.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -157,7 +158,9 @@ fn bisect(
     settings: &Settings,
     journal: &dyn Journal,
 ) -> [Pair; 2] {
-    while above.speed - below.speed > BISECTION {
+    // Both gaits are one robot's: their legs are equally long, or nearly.
+    let width = BISECTION * Units::new(gaits[0].description()).speed();
+    while above.speed - below.speed > width {
         let middle = [0.5, 0.4, 0.6].into_iter().find_map(|share| {
             let speed = below.speed + share * (above.speed - below.speed);
             let at = |k: usize| between(gaits[k], [&below.results[k], &above.results[k]], speed, settings, journal);

@@ -8,20 +8,21 @@ use crate::model::Gait;
 use crate::motion::Criterion;
 use crate::result::GaitResult;
 use crate::sqp::Control;
+use crate::units::Units;
 use serde::{Deserialize, Serialize};
 
-/// Width to which a limiting speed is bisected, m/s.
-const BISECTION: f64 = 1e-3;
-/// First step beyond the last speed that works, m/s, and where stepping ends.
-const STEP: f64 = 0.1;
-const FASTEST: f64 = 10.0;
+/// Width to which a limiting speed is bisected, in the robot's unit of speed.
+const BISECTION: f64 = 5e-4;
+/// First step beyond the last speed that works, and where stepping ends, in the same unit.
+const STEP: f64 = 0.06;
+const FASTEST: f64 = 6.0;
 /// Starts at a speed that may have no motion at all, where their number is not given.
 const STARTS: usize = 4;
 
 /// How fast a gait goes.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct MaximumSpeed {
-    /// The greatest speed with a feasible motion, to 0.001 m/s, as far as local searches can tell.
+    /// The greatest speed with a feasible motion, as far as local searches can tell.
     pub speed: f64,
     /// What conflicts just above it, weightiest first.
     pub ended_by: Vec<String>,
@@ -50,9 +51,10 @@ fn climb(gait: &dyn Gait, speed: f64, from: &[f64], settings: &Settings) -> Opti
     let mut theta = from.to_vec();
     let mut conflicts: Vec<Conflict> = Vec::new();
     let mut bad = None;
-    while bad.is_none_or(|b| b - good > BISECTION) {
-        let speed = bad.map_or(good + STEP, |b| 0.5 * (good + b));
-        if speed > FASTEST {
+    let unit = Units::new(gait.description()).speed();
+    while bad.is_none_or(|b| b - good > BISECTION * unit) {
+        let speed = bad.map_or(good + STEP * unit, |b| 0.5 * (good + b));
+        if speed > FASTEST * unit {
             return None;
         }
         let local = attempt(gait, speed, Some(&theta), settings);
@@ -105,15 +107,16 @@ fn attempt(gait: &dyn Gait, speed: f64, from: Option<&[f64]>, settings: &Setting
     best.unwrap_or_else(|| of(&start(gait, Criterion::Torque, speed, settings.seed, 0)))
 }
 
-/// For a speed without a feasible motion the nearest one with one, to 0.001 m/s, as far as local
+/// For a speed without a feasible motion the nearest one with one, as far as local
 /// searches can tell. Tries speeds ever further off on both sides, then bisects from the motion found.
 pub fn nearest_speed(gait: &dyn Gait, speed: f64, settings: &Settings) -> Option<f64> {
     let few = Settings { starts: Some(settings.starts.unwrap_or(STARTS).min(3)), ..settings.clone() };
     let none = Settings { starts: Some(0), ..settings.clone() };
+    let unit = Units::new(gait.description()).speed();
     let (mut slower, mut faster) = (speed, speed);
     for _ in 0..8 {
         for (candidate, last) in [(slower / 1.5, slower), (faster * 1.5, faster)] {
-            if candidate > FASTEST {
+            if candidate > FASTEST * unit {
                 continue;
             }
             let found = attempt(gait, candidate, None, &few);
@@ -121,7 +124,7 @@ pub fn nearest_speed(gait: &dyn Gait, speed: f64, settings: &Settings) -> Option
                 continue;
             }
             let (mut good, mut bad, mut theta) = (candidate, last, found.theta);
-            while (bad - good).abs() > BISECTION {
+            while (bad - good).abs() > BISECTION * unit {
                 let middle = 0.5 * (good + bad);
                 let local = attempt(gait, middle, Some(&theta), &none);
                 if local.status.is_optimal() {

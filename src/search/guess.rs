@@ -6,6 +6,7 @@
 
 use crate::model::{Description, Gait, HalfSteps, Rotation};
 use crate::motion::{HalfStep, Motion};
+use crate::units::Units;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::FRAC_PI_2;
 
@@ -16,7 +17,7 @@ pub struct Plan {
     pub height: f64,
     /// Duration of each half step, s.
     pub durations: Vec<f64>,
-    /// Height of the swing foot at mid-step, m.
+    /// Height of the swing foot at mid-step, as a share of the straight leg.
     pub clearance: f64,
     /// How far the platform leads the feet's middle, as a share of the straight leg.
     pub lead: f64,
@@ -31,8 +32,8 @@ impl Plan {
     pub fn default_for(d: &Description) -> Plan {
         Plan {
             height: 0.85,
-            durations: vec![duration(d, 0.22); d.phases()],
-            clearance: 0.02,
+            durations: vec![duration(d, 1.26); d.phases()],
+            clearance: 1.0 / 15.0,
             lead: 0.0,
             posture: vec![0.5; joints_per_leg(d)],
             pitch: 0.0,
@@ -43,8 +44,8 @@ impl Plan {
     pub fn random(gait: &dyn Gait, rng: &mut fastrand::Rng) -> Plan {
         let d = gait.description();
         let mut within = |lo: f64, hi: f64| lo + (hi - lo) * rng.f64();
-        let durations = (0..d.phases()).map(|_| duration(d, within(0.08, 0.4))).collect();
-        let (clearance, lead) = (within(0.008, 0.04), within(-0.3, 0.3));
+        let durations = (0..d.phases()).map(|_| duration(d, within(0.457, 2.29))).collect();
+        let (clearance, lead) = (within(2.0 / 75.0, 2.0 / 15.0), within(-0.3, 0.3));
         let posture = (0..joints_per_leg(d)).map(|_| within(0.1, 0.9)).collect();
         let pitch = within(-0.5, 0.5);
         let mut plan = Plan { height: 1.0, durations, clearance, lead, posture, pitch };
@@ -57,9 +58,10 @@ fn joints_per_leg(d: &Description) -> usize {
     d.legs.iter().map(|l| l.end_joint - l.first_joint).max().unwrap_or(0)
 }
 
+/// A duration in the robot's unit of time, within the limits; s.
 fn duration(d: &Description, t: f64) -> f64 {
     let [lo, hi] = d.limits.half_step_duration;
-    t.clamp(lo * 1.2, hi * 0.8)
+    (t * Units::new(d).time).min(0.8 * hi).max(1.2 * lo)
 }
 
 /// Where platform and swing foot are, from the stance foot, m.
@@ -77,10 +79,10 @@ pub fn walk(gait: &dyn Gait, plan: &Plan, speed: f64) -> Motion {
     let mut durations = plan.durations.clone();
     // Steps longer than the leg allows become quicker.
     let longest = 0.9 * leg * if d.half_steps == HalfSteps::Mirrored { 1.0 } else { 1.5 };
-    if speed * total > longest {
+    if speed.abs() * total > longest {
         let [shortest, _] = d.limits.half_step_duration;
         for t in &mut durations {
-            *t = (*t * longest / (speed * total)).max(shortest * 1.05);
+            *t = (*t * longest / (speed.abs() * total)).max(shortest * 1.05);
         }
     }
     let travel = speed * durations.iter().sum::<f64>();
@@ -146,7 +148,7 @@ fn place(gait: &dyn Gait, plan: &Plan, k: usize, durations: &[f64], travel: f64,
     let d = gait.description();
     let height = standing_height(gait) - (1.0 - plan.height) * d.leg_length();
     let lead = plan.lead * d.leg_length();
-    let lift = 4.0 * plan.clearance * s * (1.0 - s);
+    let lift = 4.0 * plan.clearance * d.leg_length() * s * (1.0 - s);
     let glide = s * s * (3.0 - 2.0 * s);
     if d.half_steps == HalfSteps::Mirrored {
         let x = travel * (s - 0.5) + lead;
@@ -197,8 +199,10 @@ fn foot_spread(gait: &dyn Gait) -> f64 {
 
 /// Configuration that places platform and swing foot, near a posture: damped least squares.
 fn inverse_kinematics(gait: &dyn Gait, leg: usize, target: &Target, near: &[f64]) -> Vec<f64> {
-    const POSTURE: f64 = 1e-3;
+    /// How much a distance from the posture counts beside one from the target, in legs.
+    const POSTURE: f64 = 3e-3;
     let d = gait.description();
+    let leg_length = d.leg_length();
     let (nq, nc) = (d.orientations(), d.positions());
     let mut out = vec![0.0; 2 * nc + 2 * nc * nq];
     let wanted = [target.platform[0], target.platform[1], target.swing[0], target.swing[1]];
@@ -212,8 +216,8 @@ fn inverse_kinematics(gait: &dyn Gait, leg: usize, target: &Target, near: &[f64]
             right[i] = POSTURE * POSTURE * (n - q[i]);
         }
         for (row, wanted) in rows.iter().zip(&wanted) {
-            let gradient = &out[2 * nc + row * nq..][..nq];
-            let error = wanted - out[*row];
+            let gradient: Vec<f64> = out[2 * nc + row * nq..][..nq].iter().map(|g| g / leg_length).collect();
+            let error = (wanted - out[*row]) / leg_length;
             for i in 0..nq {
                 right[i] += gradient[i] * error;
                 for j in 0..nq {

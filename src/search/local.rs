@@ -49,9 +49,9 @@ pub struct Conflict {
     pub weight: f64,
 }
 
-/// The kinks of |power| are rounded off first, by this share of weight times speed: far from the
+/// The kinks of |power| are rounded off first, by this much in the robot's unit of power: far from the
 /// optimum a kink tells a step more than is true.
-const SMOOTHING: f64 = 0.08;
+const SMOOTHING: f64 = 0.028;
 
 /// Largest component of the first step from there, in natural sizes of the variables: kinks are known where they are, and
 /// hardly beyond.
@@ -115,8 +115,7 @@ impl Task<'_> {
     fn approach(&self, mut cycle: Cycle, start: &[f64], options: &Options, observe: Observer) -> Local {
         let mut first_step_limit = f64::INFINITY;
         if self.criterion == Criterion::Energy {
-            let d = self.gait.description();
-            cycle.smoothing = SMOOTHING * d.total_mass() * d.gravity * self.speed;
+            cycle.smoothing = SMOOTHING;
             first_step_limit = CAUTION;
         }
         let solution = sqp::minimize(&mut cycle, start, &rough(options), observe);

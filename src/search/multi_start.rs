@@ -84,11 +84,12 @@ pub fn search_from(
     done: &(dyn Fn(usize) + Sync),
 ) -> Found {
     let task = Task { gait, criterion, speed };
+    let scale = Cycle::new(gait, criterion, speed).scale();
     let follow = |theta: &Vec<f64>| End { local: task.follow(theta, &mut |_| Control::Continue), informed: true };
     let mut ends: Vec<End> = neighbours.par_iter().map(follow).collect();
     let most = settings.starts.unwrap_or(MOST).max(1);
     for first in (0..most).step_by(BATCH) {
-        let so_far = collect(criterion, &ends);
+        let so_far = collect(criterion, &scale, &ends);
         if settings.starts.is_none() && so_far.effort.is_enough() {
             return so_far;
         }
@@ -100,7 +101,7 @@ pub fn search_from(
         });
         ends.par_extend(batch);
     }
-    collect(criterion, &ends)
+    collect(criterion, &scale, &ends)
 }
 
 /// The k-th start of a seed, and where it leads.
@@ -147,7 +148,7 @@ fn stream(seed: u64, k: usize) -> fastrand::Rng {
     fastrand::Rng::with_seed(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ k as u64)
 }
 
-fn collect(criterion: Criterion, ends: &[End]) -> Found {
+fn collect(criterion: Criterion, scale: &[f64], ends: &[End]) -> Found {
     let (mut good, mut bad): (Vec<&End>, Vec<&End>) = ends.iter().partition(|e| e.local.status.is_optimal());
     // Stable sorts: ties keep the order of the starts.
     good.sort_by(|a, b| a.local.costs.of(criterion).total_cmp(&b.local.costs.of(criterion)));
@@ -157,7 +158,7 @@ fn collect(criterion: Criterion, ends: &[End]) -> Found {
     let mut optima: Vec<Optimum> = Vec::new();
     for End { local, informed } in good {
         let reached = usize::from(!informed);
-        match optima.iter_mut().find(|o| same(criterion, &o.local, local)) {
+        match optima.iter_mut().find(|o| same(criterion, scale, &o.local, local)) {
             Some(known) => known.reached += reached,
             None => optima.push(Optimum { local: local.clone(), reached }),
         }
@@ -168,8 +169,13 @@ fn collect(criterion: Criterion, ends: &[End]) -> Found {
     Found { optima, failure: bad.first().map(|e| e.local.clone()), effort }
 }
 
-fn same(criterion: Criterion, a: &Local, b: &Local) -> bool {
+/// How near two motions of one optimum are, in natural sizes of the variables.
+const SAME_MOTION: f64 = 0.2;
+
+/// Whether both are one optimum; `scale` are the natural sizes of the variables.
+fn same(criterion: Criterion, scale: &[f64], a: &Local, b: &Local) -> bool {
     let (ca, cb) = (a.costs.of(criterion), b.costs.of(criterion));
-    let apart = a.theta.iter().zip(&b.theta).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
-    (ca - cb).abs() <= SAME_COST * ca.abs().max(cb.abs()) && apart < 0.5
+    let apart =
+        a.theta.iter().zip(&b.theta).zip(scale).map(|((x, y), scale)| (x - y).abs() / scale).fold(0.0, f64::max);
+    (ca - cb).abs() <= SAME_COST * ca.abs().max(cb.abs()) && apart < SAME_MOTION
 }

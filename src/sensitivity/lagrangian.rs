@@ -1,4 +1,5 @@
-//! ∂L/∂p with Θ and the multipliers kept: L = C − λᵀc_E − μᵀc_I − νᵀ(Θ − bounds), every function of it as the nonlinear program has it.
+//! ∂L/∂p with Θ and the multipliers kept: L = f − λᵀc_E − μᵀc_I − νᵀ(Θ − bounds), every function of it as the nonlinear program has it.
+//! f is the criterion per metre but for a factor, which the speed is part of and no other number.
 //!
 //! Numbers of the robot change the impacts, with them the velocities and the momentum at the beginning of each half step, and β
 //! along it. The end of a half step is part of Θ. A row of L at a dip between nodes is the quartic through the nodes, as in the
@@ -42,11 +43,17 @@ impl<'a> Slopes<'a> {
         Slopes { linearized, motion, d: linearized.cycle.description() }
     }
 
-    /// The slope in the mean speed, which enters one equation only.
+    /// The slope in the mean speed, which enters one equation, and divides the criterion.
     pub fn in_speed(&self) -> f64 {
-        let duration: f64 = self.motion.half_steps.iter().map(|h| h.duration).sum();
-        let multiplier = self.linearized.multipliers.equalities.last().copied().unwrap_or(0.0);
-        multiplier * duration / self.d.leg_length()
+        let Linearized { cycle, multipliers, .. } = self.linearized;
+        let through_equation = self.speed_multiplier() * cycle.asked_travel() / cycle.units().length;
+        let through_division = -multipliers.values.objective;
+        cycle.criterion_per_objective() * (through_equation + through_division) / cycle.speed
+    }
+
+    /// That of the equation of the mean speed.
+    fn speed_multiplier(&self) -> f64 {
+        self.linearized.multipliers.equalities[self.linearized.cycle.speed_equation()]
     }
 
     /// The slopes along levers, [`LANES`] at most. `None` if the motion cannot be followed.
@@ -63,12 +70,13 @@ impl<'a> Slopes<'a> {
             Limits::along(d, &std::array::from_fn(|lane| d.direction(levers.get(lane).map_or(&[], |l| l.slopes))));
         let landings = (0..d.phases()).map(|k| self.landing(&numbers, k)).collect::<Option<Vec<_>>>()?;
 
+        let units = self.linearized.cycle.units();
         let mut lagrangian = Number::zero();
         let (mut travel, impact) = (Number::zero(), ImpactConstraints::with(d, limits.friction));
         for (k, landing) in landings.iter().enumerate() {
             let before = (k + d.phases() - 1) % d.phases();
             lagrangian += self.half_step(&numbers, &limits, k, &landings[before].impact, &mut travel)?;
-            lagrangian -= landing.height.scale(m.equalities[CLOSURE * k + 2] / d.leg_length());
+            lagrangian -= landing.height.scale(m.equalities[CLOSURE * k + 2] / units.length);
             let end = [&landing.impact.impulse.as_slice()[..d.positions()], &[landing.impact.leaving.y]].concat();
             for (i, multiplier) in self.priced() {
                 if let Place::Impact { phase, constraint } = self.linearized.cycle.place(i)
@@ -82,10 +90,9 @@ impl<'a> Slopes<'a> {
             let nu = m.bounds[(k + 1) * own - 1];
             lagrangian += limits.half_step_duration[usize::from(nu < 0.0)].scale(nu);
         }
-        let speed = m.equalities.last().copied().unwrap_or(0.0);
-        let cost = m.values.objective;
-        lagrangian -= travel.scale(cost / self.linearized.cycle.travel() + speed / d.leg_length());
-        Some(lagrangian.d)
+        lagrangian -= travel.scale(self.speed_multiplier() / units.length);
+        let criterion = self.linearized.cycle.criterion_per_objective();
+        Some(lagrangian.d.map(|slope| criterion * slope))
     }
 
     /// Inequalities with a multiplier.
@@ -138,12 +145,13 @@ impl<'a> Slopes<'a> {
         let [beta, betad] = phase.beta_end();
         let by_beta = self.momentum_at_end(k);
         let mut lagrangian = -beta.scale(m.equalities[CLOSURE * k]);
-        lagrangian -= (beta.scale(by_beta[0]) + betad.scale(by_beta[1])).scale(m.equalities[CLOSURE * k + 1]);
+        lagrangian -= (beta.scale(by_beta[0]) + betad.scale(by_beta[1]))
+            .scale(m.equalities[CLOSURE * k + 1] / cycle.units().angular_momentum());
 
         // What is weighted at an instant: quantities of the criterion, constraints.
         let last = cycle.last_node(k);
         let mut weights = vec![Vec::new(); last + 1];
-        cycle.work_partials(k).for_each(|(node, quantity, weight)| weights[node].push((quantity, weight)));
+        cycle.objective_partials(k).for_each(|(node, quantity, weight)| weights[node].push((quantity, weight)));
         let mut rows = vec![Vec::new(); last + 1];
         for (i, multiplier) in self.priced() {
             if let Place::Instant { phase, constraint, .. } = cycle.place(i)
@@ -162,7 +170,7 @@ impl<'a> Slopes<'a> {
             phase.at(share * duration, &mut state).ok()?;
             let y = quantities(d, &state, share, duration);
             for (quantity, weight) in weights {
-                lagrangian += y[*quantity].scale(weight / cycle.travel());
+                lagrangian += y[*quantity].scale(*weight);
             }
             for (constraint, multiplier) in rows {
                 lagrangian -= constraints[*constraint].value(&y).scale(*multiplier);

@@ -63,7 +63,7 @@ pub fn sensitivities(gait: &dyn Gait, criterion: Criterion, speed: f64, motion: 
         return None;
     }
     let slopes = Slopes::new(&linearized, motion);
-    let cost = linearized.multipliers.values.objective;
+    let cost = linearized.multipliers.values.objective * linearized.cycle.criterion_per_objective();
     let entry = |parameter: &str, numbers: &[&str], unit: &str, value: f64, slope: f64| Sensitivity {
         parameter: parameter.into(),
         numbers: numbers.iter().map(ToString::to_string).collect(),

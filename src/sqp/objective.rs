@@ -44,6 +44,10 @@ impl<P: Problem, O: Objective> Problem for Redirected<'_, P, O> {
         self.problem.bounds(lower, upper);
     }
 
+    fn strictness(&self, i: usize) -> f64 {
+        self.problem.strictness(i)
+    }
+
     fn evaluate(&mut self, x: &[f64], out: &mut Values) -> Result<(), Undefined> {
         self.problem.evaluate(x, out)?;
         out.objective = self.objective.value(x, out.objective);

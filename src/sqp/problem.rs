@@ -23,6 +23,13 @@ pub trait Problem {
     fn inequalities(&self) -> usize;
     /// Bounds on the variables; both slices arrive filled with −∞ and +∞. Trial points never leave the bounds.
     fn bounds(&self, lower: &mut [f64], upper: &mut [f64]);
+    /// How much smaller than other violations that of equality `i` has to be at a solution: a share from 0 to 1 of the tolerance.
+    /// An equality whose zero is to be met relative to something small is better told so than by blowing up its row.
+    fn strictness(&self, i: usize) -> f64 {
+        let _ = i;
+        1.0
+    }
+
     /// Values at `x`. `Err` where the functions are not defined: the solver then tries a shorter step.
     fn evaluate(&mut self, x: &[f64], out: &mut Values) -> Result<(), Undefined>;
     /// Prepares the derivatives at `x`, always the point of the latest `evaluate`.

@@ -11,6 +11,8 @@ pub(super) struct Scaled<'p, P: Problem> {
     pub(super) inequalities: usize,
     pub(super) scale: Vec<f64>,
     pub(super) equality_weights: Vec<f64>,
+    /// Share of the tolerance within which each equality must be met.
+    strictness: Vec<f64>,
     pub(super) inequality_weights: Vec<f64>,
     lower: Vec<f64>,
     upper: Vec<f64>,
@@ -41,6 +43,7 @@ impl<'p, P: Problem> Scaled<'p, P> {
         let n = problem.variables();
         let (equalities, inequalities) = (problem.equalities(), problem.inequalities());
         let scale = options.scale.clone().unwrap_or_else(|| vec![1.0; n]);
+        let strictness: Vec<f64> = (0..equalities).map(|i| problem.strictness(i)).collect();
         let mut lower = vec![f64::NEG_INFINITY; n];
         let mut upper = vec![f64::INFINITY; n];
         problem.bounds(&mut lower, &mut upper);
@@ -49,6 +52,7 @@ impl<'p, P: Problem> Scaled<'p, P> {
             && scale.len() == n
             && x0.iter().all(|x| x.is_finite())
             && scale.iter().all(|s| s.is_normal() && *s > 0.0)
+            && strictness.iter().all(|s| *s > 0.0 && *s <= 1.0)
             // False for NaN too; a lower bound of +∞ or an upper one of −∞ leaves no point.
             && lower.iter().zip(&upper).all(|(l, u)| l <= u && *l < f64::INFINITY && *u > f64::NEG_INFINITY);
         sensible.then(|| Self {
@@ -58,6 +62,7 @@ impl<'p, P: Problem> Scaled<'p, P> {
             inequalities,
             scale,
             equality_weights: vec![1.0; equalities],
+            strictness,
             inequality_weights: vec![1.0; inequalities],
             lower,
             upper,
@@ -122,11 +127,11 @@ impl<'p, P: Problem> Scaled<'p, P> {
         }
     }
 
-    /// Largest violation in the problem's own units.
+    /// Largest violation in the problem's own units, of equalities by the measure of their tolerance.
     pub(super) fn raw_violation(&self, point: &Point) -> f64 {
         let mut worst: f64 = 0.0;
-        for (c, w) in point.values.equalities.iter().zip(&self.equality_weights) {
-            worst = worst.max(c.abs() / w);
+        for ((c, w), share) in point.values.equalities.iter().zip(&self.equality_weights).zip(&self.strictness) {
+            worst = worst.max(c.abs() / (w * share));
         }
         for (c, w) in point.values.inequalities.iter().zip(&self.inequality_weights) {
             worst = worst.max(-c / w);

@@ -18,6 +18,7 @@ pub use system::System;
 
 use crate::lgl::NODES;
 use crate::model::{Description, Gait};
+use crate::units::Units;
 
 /// A motion that the equations do not admit.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -54,9 +55,19 @@ pub struct Stance {
     pub prescribed: Prescribed,
     early_length: usize,
     layout: Layout,
+    units: Units,
 }
 
 const NEWTON_STEPS: usize = 25;
+/// Newton's method has converged where rounding is left after one more step, and diverged here; in rad and in the robot's unit
+/// of angular momentum.
+const CONVERGED: f64 = 1e-9;
+const DIVERGED: f64 = 1e6;
+
+/// f1 counts as zero below this share of what it is in the beginning, and of the robot's unit of inertia.
+const VANISHING: [f64; 2] = [1e-3, 1e-6];
+/// No motion turns so far, rad.
+const FARTHEST: f64 = 20.0;
 
 impl Stance {
     pub fn new(description: &Description, mesh: &Mesh, leg: usize) -> Stance {
@@ -80,6 +91,7 @@ impl Stance {
             prescribed: Prescribed::new(layout.prescribed, n),
             early_length,
             layout,
+            units: Units::new(description),
         }
     }
 
@@ -114,14 +126,16 @@ impl Stance {
     /// β̇ and σ̇ (eq. 8, 9), where f1 is not nearly zero beside what it is in the beginning.
     fn rates_of(&self, [f1, f2, moment, ..]: &[f64; 6], beta: f64, sigma: f64) -> Result<[f64; 2], Undefined> {
         let reference = self.late[0][0];
-        if f1.abs() < 1e-3 * reference.abs() || f1.abs() < 1e-6 || f1 * reference < 0.0 {
+        let least = (VANISHING[0] * reference.abs()).max(VANISHING[1] * self.units.inertia());
+        // Negative, too, if its sign is not that of the beginning.
+        if f1 * reference.signum() < least {
             return Err(Undefined::NoInertia);
         }
         let betad = (sigma - f2) / f1;
         if !(betad.is_finite() && moment.is_finite()) {
             return Err(Undefined::NotFinite);
         }
-        if beta.abs() > 20.0 {
+        if beta.abs() > FARTHEST {
             return Err(Undefined::Diverged);
         }
         Ok([betad, *moment])
@@ -158,6 +172,7 @@ impl Stance {
         const M: usize = NODES - 1;
         let a = &mesh.lobatto.integral;
         let first = e * M;
+        let momentum = self.units.angular_momentum();
         let (b0, s0, bd0, sd0) = (self.beta[first], self.sigma[first], self.betad[first], self.sigmad[first]);
         for i in 1..NODES {
             let dt = h * mesh.lobatto.nodes[i];
@@ -177,10 +192,11 @@ impl Stance {
                     beta += h * a[i][j] * self.betad[first + j];
                     sigma += h * a[i][j] * self.sigmad[first + j];
                 }
-                residual[i - 1] = [beta - self.beta[first + i], sigma - self.sigma[first + i]];
-                largest = largest.max(residual[i - 1][0].abs()).max(residual[i - 1][1].abs());
+                let [by_beta, by_sigma] = [beta - self.beta[first + i], sigma - self.sigma[first + i]];
+                residual[i - 1] = [by_beta, by_sigma];
+                largest = largest.max(by_beta.abs()).max(by_sigma.abs() / momentum);
             }
-            if !largest.is_finite() || largest > 1e6 {
+            if !largest.is_finite() || largest > DIVERGED {
                 return Err(Undefined::Diverged);
             }
             let system = System::new(a, h, |j| self.partials(first + j));
@@ -193,7 +209,7 @@ impl Stance {
                 break;
             }
             // One more step after this: quadratic convergence then leaves rounding only.
-            converged = largest < 1e-9;
+            converged = largest < CONVERGED;
         }
         if !converged {
             return Err(Undefined::Diverged);

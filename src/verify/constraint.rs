@@ -1,8 +1,9 @@
 //! The constraints of §4.2 and §6.1 by name, and the record of how closely each is met.
 //!
 //! A margin is what is left, in a natural unit: torques in the greatest torque, joint speeds in the
-//! unloaded speed, forces in the robot's weight, impulses in its momentum at 1 m/s, lengths in the
-//! stretched leg, angles in rad, velocities in m/s, durations in s. Negative means violated.
+//! unloaded speed, forces in the robot's weight, lengths in the stretched leg, durations in √(leg/gravity), velocities in
+//! √(gravity·leg), impulses in the robot's momentum at that velocity, angles in rad, the mean speed in the speed asked.
+//! Negative means violated.
 
 use super::receipt::Finding;
 use crate::model::Description;

@@ -20,7 +20,7 @@ pub fn stance_leg(description: &Description, index: usize) -> usize {
 }
 
 /// Notes the margins of the impact that ends half step `index`, and returns how far the initial state of the one after
-/// it is from what follows (eq. 16, 18, 19): rad, and rad/s over max(1, rate).
+/// it is from what follows (eq. 16, 18, 19): angles in rad, rates relative to themselves or to a slow rate.
 pub fn transition<T: Scalar>(
     description: &Description,
     numbers: Numbers<T>,
@@ -35,7 +35,8 @@ pub fn transition<T: Scalar>(
     let landing = 1 - stance_leg(description, index);
     let mut multibody = Multibody::with(description, numbers);
     let impact = impact_of(&mut multibody, landing, &q, &qd).ok_or(VerifyError::Impact { half_step: index + 1 })?;
-    Units::new(description).impact(multibody.numbers(), &impact.impulse, &impact.leaving, note);
+    let units = Units::new(description);
+    units.impact(multibody.numbers(), &impact.impulse, &impact.leaving, note);
 
     let rates = &impact.after[description.positions()..];
     let found = description.complete(&after.q_initial, after.beta_initial);
@@ -45,17 +46,17 @@ pub fn transition<T: Scalar>(
             HalfSteps::Mirrored => description.swapped(k),
             HalfSteps::Distinct => (k, 1.0),
         };
-        [found[k] - q[from].scale(sign), relative(found_rates[k], rates[from].scale(sign))]
+        [found[k] - q[from].scale(sign), relative(&units, found_rates[k], rates[from].scale(sign))]
     });
     Ok(gaps.collect())
 }
 
 /// How far the integrated β and β̇ end from what the motion says (eq. 23, 24).
-pub fn closure<T: Scalar>(half_step: &HalfStep<T>, end: [T; 2]) -> [T; 2] {
-    [end[0] - half_step.beta_final, relative(end[1], half_step.betad_final)]
+pub fn closure<T: Scalar>(units: &Units, half_step: &HalfStep<T>, end: [T; 2]) -> [T; 2] {
+    [end[0] - half_step.beta_final, relative(units, end[1], half_step.betad_final)]
 }
 
-/// Difference of two rates, relative where they are large.
-fn relative<T: Scalar>(found: T, expected: T) -> T {
-    (found - expected) / T::from(expected.least_magnitude().max(1.0))
+/// Difference of two rates, relative where they are not slow, else to a slow one.
+fn relative<T: Scalar>(units: &Units, found: T, expected: T) -> T {
+    (found - expected) / T::from(expected.least_magnitude().max(units.rate()))
 }

@@ -26,7 +26,7 @@ pub enum VerifyError {
     NotFinite { half_step: usize, list: String },
     #[error("half step {half_step} takes {duration} s: its duration must be positive and finite")]
     Duration { half_step: usize, duration: f64 },
-    #[error("the speed must be finite, not {0} m/s")]
+    #[error("the speed must be finite and not zero, not {0} m/s")]
     Speed(f64),
     #[error("a grid of {0} points is too coarse: at least {SMALLEST_GRID} are needed")]
     Grid(usize),

@@ -8,11 +8,12 @@
 //! Before it the stance foot was at rest, which gives ṗ⁻ from q̇⁻ (eq. 3).
 
 use super::geometry::Vec3;
+use super::margins::Units;
 use super::multibody::Multibody;
 use crate::model::Description;
 use crate::number::Scalar;
 
-/// Pivots below this share of the largest entry make a system singular.
+/// Pivots below this share of the largest entry make a system singular, in the robot's units.
 const SINGULAR: f64 = 1e-13;
 
 /// What the impact does.
@@ -64,7 +65,11 @@ pub fn impact_of<T: Scalar>(multibody: &mut Multibody<T>, landing: usize, q: &[T
             system[(n + c) * size + row] = d[row * nc + c];
         }
     }
-    solve(&mut system, &mut right)?;
+    // In the robot's units, equations are of momentum, of angular momentum and of velocity; unknowns velocities, rates, impulses.
+    let Units { mass, leg, .. } = Units::new(description);
+    let per = |row: usize| [1.0 / mass, 1.0 / (mass * leg), 1.0][usize::from(row >= nc) + usize::from(row >= n)];
+    let of = |column: usize| [1.0, 1.0 / leg, mass][usize::from(column >= nc) + usize::from(column >= n)];
+    solve(&mut system, &mut right, (0..size).map(per).collect(), of)?;
     let velocity = |foot: &[T], xd: &[T]| {
         let mut v = Vec3::zeros();
         for (row, rate) in foot.chunks_exact(nc).zip(xd) {
@@ -81,15 +86,22 @@ pub fn impact_of<T: Scalar>(multibody: &mut Multibody<T>, landing: usize, q: &[T
     Some(Impact { before, after: right, impulse, leaving })
 }
 
-/// Gaussian elimination with row exchanges; `matrix` is row-major, the solution replaces `right`.
-fn solve<T: Scalar>(matrix: &mut [T], right: &mut [T]) -> Option<()> {
+/// Gaussian elimination with row exchanges; `matrix` is row-major, the solution replaces `right`. Entries are compared by what
+/// they are times a factor of their row and one of their column.
+fn solve<T: Scalar>(
+    matrix: &mut [T],
+    right: &mut [T],
+    mut of_row: Vec<f64>,
+    of_column: impl Fn(usize) -> f64,
+) -> Option<()> {
     let n = right.len();
-    let largest = matrix.iter().fold(0.0, |m: f64, x| m.max(x.value().abs()));
+    let sizes = matrix.iter().enumerate().map(|(i, x)| x.value().abs() * of_row[i / n] * of_column(i % n));
+    let largest = sizes.fold(0.0, f64::max);
     for k in 0..n {
-        let size = |row: &usize| matrix[row * n + k].value().abs();
+        let size = |row: &usize| matrix[row * n + k].value().abs() * of_row[*row];
         let pivot = (k..n).max_by(|a, b| size(a).total_cmp(&size(b)))?;
         let value = matrix[pivot * n + k];
-        let magnitude = value.least_magnitude();
+        let magnitude = value.least_magnitude() * of_row[pivot] * of_column(k);
         if magnitude.is_nan() || magnitude <= SINGULAR * largest {
             return None;
         }
@@ -97,6 +109,7 @@ fn solve<T: Scalar>(matrix: &mut [T], right: &mut [T]) -> Option<()> {
             matrix.swap(k * n + column, pivot * n + column);
         }
         right.swap(k, pivot);
+        of_row.swap(k, pivot);
         for row in k + 1..n {
             let factor = matrix[row * n + k] / value;
             for column in k..n {

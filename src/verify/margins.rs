@@ -8,21 +8,48 @@ use super::support::leg_length;
 use crate::model::Description;
 use crate::number::Scalar;
 
+/// A rate of this many radians per unit of time is a slow one.
+const SLOW: f64 = 0.2;
+
 /// The natural units of margins; see [`constraint`](super::constraint).
 #[derive(Clone, Copy, Debug)]
 pub struct Units {
-    /// Of forces, N.
+    /// Of masses: the robot's, kg.
+    pub mass: f64,
+    /// Of forces: its weight, N.
     pub weight: f64,
-    /// Of impulses: the momentum at 1 m/s, N·s.
-    pub momentum: f64,
-    /// Of lengths, m.
+    /// Of lengths: its stretched leg, m.
     pub leg: f64,
+    /// Of times: √(leg/gravity), s.
+    pub time: f64,
+    /// Of velocities: √(gravity·leg), m/s.
+    pub speed: f64,
+    /// Of impulses: the robot's momentum at that velocity, N·s.
+    pub momentum: f64,
 }
 
 impl Units {
     pub fn new(description: &Description) -> Units {
-        let momentum = description.total_mass();
-        Units { weight: momentum * description.gravity, momentum, leg: leg_length(description) }
+        let (mass, leg, gravity) = (description.total_mass(), leg_length(description), description.gravity);
+        let speed = (gravity * leg).sqrt();
+        Units { mass, weight: mass * gravity, leg, time: (leg / gravity).sqrt(), speed, momentum: mass * speed }
+    }
+
+    /// A slow rate of an angle, rad/s: rates are judged relative to themselves where they are faster, else relative to this.
+    pub fn rate(&self) -> f64 {
+        SLOW / self.time
+    }
+
+    /// Margins of a half step's duration.
+    pub fn duration<T: Scalar>(&self, numbers: &Numbers<T>, duration: T, mut note: impl FnMut(Constraint, T)) {
+        let ([shortest, longest], time) = (numbers.half_step_duration, T::from(self.time));
+        note(Constraint::Shortest, (duration - shortest) / time);
+        note(Constraint::Longest, (longest - duration) / time);
+    }
+
+    /// Margin of the mean speed: its difference from the speed asked, relative to that.
+    pub fn mean_speed<T: Scalar>(found: T, asked: f64) -> T {
+        -((found - T::from(asked)) / T::from(asked)).abs()
     }
 
     /// Margins of what must hold at every instant, but for the clearance.
@@ -53,7 +80,7 @@ impl Units {
         let momentum = T::from(self.momentum);
         note(Constraint::VerticalImpulse, impulse.y / momentum);
         note(Constraint::ImpulseFriction, (numbers.friction * impulse.y - tangential(impulse)) / momentum);
-        note(Constraint::Leaving, leaving.y);
+        note(Constraint::Leaving, leaving.y / T::from(self.speed));
     }
 }
 

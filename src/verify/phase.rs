@@ -3,12 +3,13 @@
 use super::error::{VerifyError, check_half_step};
 use super::instants::{Instants, State};
 use super::integrate::{Solution, integrate};
+use super::margins::Units;
 use super::numbers::Numbers;
 use crate::model::Description;
 use crate::motion::HalfStep;
 use crate::number::Scalar;
 
-/// Error allowed in a step of the integration of (β, β̇), rad and rad/s.
+/// Error allowed in a step of the integration of β, rad, and of β̇ in the unit of slow rates; relative where they are greater than 1.
 pub const TOLERANCE: f64 = 1e-12;
 
 /// A single support phase.
@@ -18,8 +19,9 @@ pub struct Phase<'a, T: Scalar = f64> {
     /// 1-based, for messages.
     number: usize,
     instants: Instants<'a, T>,
-    /// (β, β̇) over time.
+    /// β, and β̇ in the unit of slow rates, over time.
     beta: Solution<2, T>,
+    units: Units,
     cursor: usize,
 }
 
@@ -47,12 +49,16 @@ impl<'a, T: Scalar> Phase<'a, T> {
         check_half_step(half_step, description.prescribed(), number)?;
         let mut instants = Instants::new(description, numbers, half_step, leg);
         let mut state = State::new(description);
-        let rate = |t: f64, y: &[T; 2]| Some([y[1], instants.accelerate(t.into(), *y, &mut state)?]);
-        let initial = [half_step.beta_initial, half_step.betad_initial];
+        let units = Units::new(description);
+        let rate = |t: f64, y: &[T; 2]| {
+            let betad = y[1].scale(units.rate());
+            Some([betad, instants.accelerate(t.into(), [y[0], betad], &mut state)?.scale(1.0 / units.rate())])
+        };
+        let initial = [half_step.beta_initial, half_step.betad_initial.scale(1.0 / units.rate())];
         let duration = half_step.duration.value();
         let beta =
             integrate(rate, 0.0, duration, initial, TOLERANCE).map_err(|stop| VerifyError::stopped(stop, number))?;
-        Ok(Phase { duration, number, instants, beta, cursor: 0 })
+        Ok(Phase { duration, number, instants, beta, units, cursor: 0 })
     }
 
     pub fn description(&self) -> &'a Description {
@@ -70,12 +76,14 @@ impl<'a, T: Scalar> Phase<'a, T> {
 
     /// β and β̇ at the end.
     pub fn beta_end(&self) -> [T; 2] {
-        self.beta.end()
+        let [beta, scaled] = self.beta.end();
+        [beta, scaled.scale(self.units.rate())]
     }
 
     /// β and β̇ at time `t`; the times of successive calls must not decrease.
     pub fn beta(&mut self, t: f64) -> [T; 2] {
-        self.beta.at(t, &mut self.cursor)
+        let [beta, scaled] = self.beta.at(t, &mut self.cursor);
+        [beta, scaled.scale(self.units.rate())]
     }
 
     /// The state at time `t`; the times of successive calls must not decrease.

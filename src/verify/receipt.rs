@@ -4,14 +4,12 @@ use super::constraint::{Constraint, Tally};
 use super::cycle::{closure, stance_leg, transition};
 use super::error::{VerifyError, check};
 use super::grid::{Totals, evaluate};
+use super::margins::Units;
 use super::numbers::Numbers;
 use super::phase::Phase;
 use crate::model::Description;
 use crate::motion::{Costs, Motion};
 use serde::{Deserialize, Serialize};
-
-/// Distance below which costs per metre are not defined, m.
-const NO_TRAVEL: f64 = 1e-9;
 
 /// What verification found; see [`verify`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -21,8 +19,8 @@ pub struct Receipt {
     /// The constraint that is violated most.
     pub worst: Option<Finding>,
     /// How far the motion is from a cycle, by an integration of its own: the ends of β and β̇
-    /// (eq. 23, 24) and the initial states after the impacts (eq. 16, 18, 19). Angles in rad, rates in
-    /// rad/s and relative where they exceed 1 rad/s.
+    /// (eq. 23, 24) and the initial states after the impacts (eq. 16, 18, 19). Angles in rad, rates relative to themselves or, if
+    /// that is greater, to a fifth of √(gravity/leg).
     pub cycle_error: f64,
     pub costs: Costs,
     /// Travel of the platform's mass centre over the half steps of the motion, m.
@@ -74,9 +72,10 @@ pub struct JointPeak {
 /// If the motion does not have the numbers that the gait needs, or cannot be followed to its end.
 pub fn verify(description: &Description, motion: &Motion, speed: f64, grid: usize) -> Result<Receipt, VerifyError> {
     check(description, motion, grid)?;
-    if !speed.is_finite() {
+    if !speed.is_finite() || speed == 0.0 {
         return Err(VerifyError::Speed(speed));
     }
+    let units = Units::new(description);
     let mut cycle_error = 0.0_f64;
     let mut tallies = Vec::new();
     let mut totals: Vec<Totals> = Vec::new();
@@ -86,11 +85,12 @@ pub fn verify(description: &Description, motion: &Motion, speed: f64, grid: usiz
         totals.push(evaluate(&mut phase, half_step, grid, &mut tally)?);
         let at_impact = |constraint, margin| tally.note(constraint, margin, half_step.duration);
         let gaps = transition(description, Numbers::new(description), &motion.half_steps, i, at_impact)?;
-        let all = gaps.into_iter().chain(closure(half_step, phase.beta_end()));
+        let all = gaps.into_iter().chain(closure(&units, half_step, phase.beta_end()));
         cycle_error = all.fold(cycle_error, |worst, gap| worst.max(gap.abs()));
-        let [shortest, longest] = description.limits.half_step_duration;
-        tally.note(Constraint::Shortest, half_step.duration - shortest, half_step.duration);
-        tally.note(Constraint::Longest, longest - half_step.duration, half_step.duration);
+        let numbers = phase.numbers();
+        units.duration(numbers, half_step.duration, |constraint, margin| {
+            tally.note(constraint, margin, half_step.duration)
+        });
         tallies.push(tally);
     }
 
@@ -98,13 +98,13 @@ pub fn verify(description: &Description, motion: &Motion, speed: f64, grid: usiz
     let step_length = sum(|t| t.travel);
     // A gait may walk backwards; what a metre costs does not depend on where it leads.
     let distance = step_length.abs();
-    if distance.is_nan() || distance < NO_TRAVEL {
+    if !distance.is_normal() {
         return Err(VerifyError::NoTravel { distance: step_length });
     }
     let costs = Costs { energy: sum(|t| t.energy) / distance, torque: sum(|t| t.torque) / distance };
     let mean_speed = step_length / motion.half_steps.iter().map(|h| h.duration).sum::<f64>();
     if let (Some(tally), Some(half_step)) = (tallies.last_mut(), motion.half_steps.last()) {
-        tally.note(Constraint::MeanSpeed, -(mean_speed - speed).abs(), half_step.duration);
+        tally.note(Constraint::MeanSpeed, Units::mean_speed(mean_speed, speed), half_step.duration);
     }
 
     let worst = tallies.iter().filter_map(|t| t.worst(description)).min_by(|a, b| a.margin.total_cmp(&b.margin));

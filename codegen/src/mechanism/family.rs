@@ -57,10 +57,13 @@ impl Family {
         if family.gives(&mechanism(&changed)?.numbers(), value) { Ok(family) } else { Err(not_affine()) }
     }
 
-    /// Whether these are the mechanism's numbers for the parameters' values.
+    /// Whether these are the mechanism's numbers for the parameters' values, but for rounding beside the robot's size.
     fn gives(&self, numbers: &[f64], value: impl Fn(usize) -> f64) -> bool {
         let affine = |i: usize| self.slopes.iter().enumerate().fold(self.base[i], |sum, (k, s)| sum + s[i] * value(k));
-        numbers.iter().enumerate().all(|(i, number)| (affine(i) - number).abs() <= 1e-9 * number.abs().max(1e-6))
+        let same = |(i, (number, size)): (usize, (&f64, f64))| {
+            (affine(i) - number).abs() <= 1e-9 * number.abs().max(1e-6 * size)
+        };
+        numbers.iter().zip(self.mechanism.sizes()).enumerate().all(same)
     }
 }
 

@@ -31,6 +31,9 @@ pub struct Lever {
 /// Step of the differences, as a share of the value.
 const STEP: f64 = 1.0 / 1024.0;
 
+/// A number that changes by less than this share of its natural size, when a value doubles, has cancelled to rounding.
+const CANCELLED: f64 = 1e-11;
+
 /// A number of the specification; mounts that are as far out are one.
 struct Number {
     names: Vec<String>,
@@ -78,14 +81,26 @@ impl Lever {
             let mechanism = robot.locked(&gait.locked).map(|robot| Mechanism::new(&robot, &gait));
             mechanism.ok().map(|m| [m.numbers(), m.limiting_numbers()].concat())
         };
-        let size = if self.value == 0.0 { 1.0 } else { self.value.abs() };
+        let mechanism = robot.locked(&gait.locked).map(|robot| Mechanism::new(&robot, gait)).ok()?;
+        let ((mass, length), sizes) = (mechanism.size(), mechanism.sizes());
+        // A step from zero is one of the robot's size.
+        let natural = match self.unit {
+            "m" => length,
+            "kg·m²" => mass * length * length,
+            "N" => mass * mechanism.gravity,
+            _ => 1.0,
+        };
+        let size = if self.value == 0.0 { natural } else { self.value.abs() };
         let difference = |h: f64| -> Option<Vec<f64>> {
             let (above, below) = (numbers(h)?, numbers(-h)?);
             Some(above.iter().zip(&below).map(|(a, b)| (a - b) / (2.0 * h)).collect())
         };
         let (wide, narrow) = (difference(size * STEP)?, difference(size * STEP / 2.0)?);
         let slope = |(wide, narrow): (&f64, &f64)| rounded((4.0 * narrow - wide) / 3.0);
-        Some(wide.iter().zip(&narrow).map(slope).enumerate().filter(|(_, slope)| *slope != 0.0).collect())
+        // What only limits follows from one number each, and cancels nothing.
+        let rounding = |k: usize| sizes.get(k).map_or(0.0, |natural| CANCELLED * natural / size);
+        let slopes = wide.iter().zip(&narrow).map(slope).enumerate();
+        Some(slopes.filter(|(k, slope)| *slope != 0.0 && slope.abs() >= rounding(*k)).collect())
     }
 }
 
@@ -203,13 +218,9 @@ fn braced(names: &[String]) -> String {
     format!("{}{{{}}}{suffix}", &first[..prefix], middles.join(","))
 }
 
-/// To the digits that differences can give; what cancels to rounding is zero.
+/// To the digits that differences can give.
 fn rounded(slope: f64) -> f64 {
-    if slope == 0.0 {
-        return 0.0;
-    }
-    let rounded = format!("{slope:.10e}").parse().unwrap_or(slope);
-    if f64::abs(rounded) < 1e-12 { 0.0 } else { rounded }
+    if slope == 0.0 { 0.0 } else { format!("{slope:.10e}").parse().unwrap_or(slope) }
 }
 
 impl Mechanism {

@@ -162,6 +162,34 @@ impl Mechanism {
         numbers
     }
 
+    /// Mass of the robot and reach of its leg, kg and m: what its numbers are small or large beside.
+    pub fn size(&self) -> (f64, f64) {
+        let norm = |v: &[f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let reach = self.bodies.iter().map(|body| norm(&body.offset)).sum::<f64>() + norm(&self.legs[0].foot);
+        (self.bodies.iter().map(|body| body.mass).sum(), reach)
+    }
+
+    /// The robot's size in the unit of each of its [`numbers`](Mechanism::numbers).
+    pub fn sizes(&self) -> Vec<f64> {
+        let (mass, length) = self.size();
+        let inertia = mass * length * length;
+        let typical = |body: &mut Body| {
+            (body.offset, body.mass, body.com) = ([length; 3], mass, [length; 3]);
+            body.inertia = [[inertia; 3]; 3];
+        };
+        let mut sized = self.clone();
+        sized.bodies.iter_mut().for_each(typical);
+        sized.joints.iter_mut().for_each(|joint| joint.rotor_inertia = inertia);
+        for leg in &mut sized.legs {
+            leg.foot = [length; 3];
+            for member in &mut leg.members {
+                member.bodies.iter_mut().for_each(typical);
+                member.foot = [length; 3];
+            }
+        }
+        sized.numbers()
+    }
+
     /// Number of position coordinates p (and of reaction components).
     pub fn positions(&self) -> usize {
         if self.lateral { 3 } else { 2 }

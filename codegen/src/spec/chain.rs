@@ -73,7 +73,8 @@ impl Parts {
             let Some(mount) = &leg.mount else { continue };
             let same = self.legs[..i].iter().find_map(|other| {
                 let theirs = other.mount.as_ref()?;
-                let close = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-9;
+                let farthest = theirs.value.iter().chain(&mount.value).fold(0.0, |far: f64, x| far.max(x.abs()));
+                let close = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-9 * farthest;
                 theirs.value.iter().zip(&mount.value).all(close).then_some((other, theirs))
             });
             if let Some((other, theirs)) = same {

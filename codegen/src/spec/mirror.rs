@@ -24,7 +24,7 @@ pub(super) fn check(raw: &RawGait, legs: &[Vec<usize>; 2], robot: &RobotFile, si
     let com = robot.robot.platform.com;
     let [hip_a, hip_b] = [&a, &b].map(|leg| [0, 1, 2].map(|k| leg.mount[k] - com[k]));
     let hips = || {
-        likeness.apart(&hip_a, &hip_b).map(|k| {
+        likeness.apart(&hip_a, &hip_b, a.length()).map(|k| {
             let at = DIRECTIONS[k];
             let (a, b) = (hip_a[k], hip_b[k]);
             format!("the hips of the virtual legs are at {at} = {a:.4} and {at} = {b:.4} from the mass centre")

@@ -130,7 +130,8 @@ fn check_pair(raw: &RawGait, list: &Names, legs: &[usize], robot: &RobotFile, si
             Rotation::Pitch => &[0, 1],
             Rotation::Roll => &[1, 2],
         };
-        let apart = shared.iter().find(|&&k| (all[leg].mount[k] - all[lead].mount[k]).abs() > SAME);
+        let apart =
+            shared.iter().find(|&&k| (all[leg].mount[k] - all[lead].mount[k]).abs() > SAME * all[lead].length());
         if let Some(&k) = apart {
             let title = format!("legs `{}` and `{}` cannot move as one", all[lead].name, all[leg].name);
             let label = format!("mounted at another {} than `{}`", DIRECTIONS[k], all[lead].name);

@@ -3,7 +3,7 @@
 
 use super::types::{Actuator, Axis, Inertia, Joint, Leg, Robot, Rotation};
 
-/// Lengths (m) and angles (rad) this close are equal, and masses and inertias to this share.
+/// Angles (rad) this close are equal, and lengths, masses and inertias to this share.
 pub(super) const SAME: f64 = 1e-9;
 
 impl Robot {
@@ -36,6 +36,14 @@ pub(super) enum Likeness {
     Mirrored,
 }
 
+impl Leg {
+    /// How far its links reach, end to end, m.
+    pub(super) fn length(&self) -> f64 {
+        let norm = |v: &[f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        self.chain.iter().map(|segment| norm(&segment.link.end)).sum()
+    }
+}
+
 impl Likeness {
     /// Of legs that move as one.
     pub fn of_pair(rotation: Rotation) -> Likeness {
@@ -47,11 +55,11 @@ impl Likeness {
         if rotation == Rotation::Roll { Likeness::Mirrored } else { Likeness::InPlane }
     }
 
-    /// The first axis along which the points differ.
-    pub fn apart(self, a: &[f64; 3], b: &[f64; 3]) -> Option<usize> {
+    /// The first axis along which the points differ, beside a length.
+    pub fn apart(self, a: &[f64; 3], b: &[f64; 3], length: f64) -> Option<usize> {
         let sign = |k: usize| if k == 2 && matches!(self, Likeness::Mirrored) { -1.0 } else { 1.0 };
         let axes = if matches!(self, Likeness::InPlane) { 2 } else { 3 };
-        (0..axes).find(|&k| (a[k] - sign(k) * b[k]).abs() > SAME)
+        (0..axes).find(|&k| (a[k] - sign(k) * b[k]).abs() > SAME * length)
     }
 
     fn same_inertia(self, a: &Inertia, b: &Inertia) -> bool {
@@ -90,7 +98,7 @@ pub(super) fn moves_unlike(a: &Leg, b: &Leg, likeness: Likeness) -> Option<Strin
         if !same_motor(&s.joint.actuator, &t.joint.actuator) {
             return Some(format!("`{}` and `{}` have different motors", s.joint.name, t.joint.name));
         }
-        if likeness.apart(&s.link.end, &t.link.end).is_some() {
+        if likeness.apart(&s.link.end, &t.link.end, a.length()).is_some() {
             let (a, b) = (s.link.end, t.link.end);
             return Some(format!("`{}` ends at {a:?}, `{}` at {b:?}", s.link.name, t.link.name));
         }
@@ -100,11 +108,12 @@ pub(super) fn moves_unlike(a: &Leg, b: &Leg, likeness: Likeness) -> Option<Strin
 
 /// Why one leg does not weigh what the other weighs, if it does not.
 pub(super) fn weighs_unlike(a: &Leg, b: &Leg, likeness: Likeness) -> Option<String> {
+    let length = a.length();
     a.chain.iter().zip(&b.chain).find_map(|(s, t)| {
         let (s, t) = (&s.link, &t.link);
         if (s.mass - t.mass).abs() > SAME * s.mass {
             Some(format!("`{}` weighs {} kg, its counterpart {} kg", s.name, s.mass, t.mass))
-        } else if likeness.apart(&s.com, &t.com).is_some() {
+        } else if likeness.apart(&s.com, &t.com, length).is_some() {
             Some(format!("the mass centre of `{}` is at {:?}, that of its counterpart at {:?}", s.name, s.com, t.com))
         } else if !likeness.same_inertia(&s.inertia, &t.inertia) {
             Some(format!("the inertia of `{}` is not that of its counterpart", s.name))

@@ -6,10 +6,11 @@ use crate::cycle::problem::CLOSURE;
 use crate::lgl::NODES;
 use crate::model::Description;
 use crate::stance::{Mesh, Stance};
+use crate::units::Units;
 
 impl PhaseWork {
     /// Multipliers of the collocation equations, from the last element to the first.
-    pub(super) fn adjoint(&mut self, d: &Description, p: &Phase, lambda: &[f64], k: usize) {
+    pub(super) fn adjoint(&mut self, d: &Description, units: &Units, p: &Phase, lambda: &[f64], k: usize) {
         let nodes = p.mesh.nodes.len();
         self.omega.clear();
         self.omega.resize(nodes, [0.0; 2]);
@@ -23,7 +24,7 @@ impl PhaseWork {
         }
         let last = p.last();
         self.stationarity[last][0] -= lambda[CLOSURE * k];
-        self.stationarity[last][1] -= lambda[CLOSURE * k + 1];
+        self.stationarity[last][1] -= lambda[CLOSURE * k + 1] / units.angular_momentum();
         p.stance.adjoint(&p.mesh, p.duration(), &mut self.stationarity, &mut self.omega);
     }
 

@@ -4,7 +4,7 @@
 use super::Workspace;
 use super::products::congruence;
 use crate::cycle::phase::Phase;
-use crate::cycle::problem::{CLOSURE, pitch, pitch_unit};
+use crate::cycle::problem::{CLOSURE, pitch};
 use crate::cycle::{Cycle, renamed};
 
 impl Cycle<'_> {
@@ -50,8 +50,8 @@ impl Cycle<'_> {
                 self.impact.partials(c, &b.impact, |i, partial| work.outputs[i] -= multiplier * partial);
             }
         }
-        if let Some(multiplier) = lambda.get(CLOSURE * self.phases.len() + 1 + before) {
-            work.outputs[pitch(d)] -= multiplier / pitch_unit(d);
+        if let Some(multiplier) = lambda.get(self.speed_equation() + 1 + before) {
+            work.outputs[pitch(d)] -= multiplier / self.units.angular_momentum();
         }
         self.gait.touchdown_curvature(1 - b.leg, &b.q_end, &b.qd_end, &work.xi, &work.outputs, &mut work.touchdown);
         let (q_q, rest) = work.touchdown.split_at(nq * nq);
@@ -91,13 +91,15 @@ impl Cycle<'_> {
         self.scatter(before, small, hessian);
 
         // Closure of σ and touchdown at this half step's own end.
-        let (closure, touchdown) = (lambda[CLOSURE * k + 1], lambda[CLOSURE * k + 2]);
+        let units = &self.units;
+        let (closure, touchdown) =
+            (lambda[CLOSURE * k + 1] / units.angular_momentum(), lambda[CLOSURE * k + 2] / units.length);
         self.sigma_curvature(
             p,
             &p.q_end,
             &p.qd_end,
             closure,
-            -touchdown / d.leg_length(),
+            -touchdown,
             &work.zeros,
             &mut work.kernel,
             &mut work.small,

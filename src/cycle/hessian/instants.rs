@@ -24,7 +24,7 @@ impl Cycle<'_> {
             work.phase.node(self.gait, d, p, node, h);
         }
         // Products of quantities: squares of torques, torque times rate, cones.
-        let scale = t / self.travel;
+        let scale = t * self.per_work();
         for (slot, row) in work.reach.iter_mut().zip(p.by_theta.chunks(self.moved.len())) {
             *slot = dot(row, &self.moved);
         }
@@ -213,14 +213,14 @@ impl PhaseWork {
     }
 
     /// T times the integral of the criterion.
-    pub(super) fn bilinear(&mut self, p: &Phase, h: &mut [f64], travel: f64) {
+    pub(super) fn bilinear(&mut self, p: &Phase, h: &mut [f64], per_work: f64) {
         self.scratch.fill(0.0);
         for (node, quantity, partial) in &p.cost.partials {
             for (s, g) in self.scratch.iter_mut().zip(p.instants.gradient(*node, *quantity)) {
                 *s += partial * g;
             }
         }
-        cross_duration(h, &self.scratch, 1.0 / travel, p.layout.duration());
+        cross_duration(h, &self.scratch, per_work, p.layout.duration());
     }
 }
 

@@ -114,21 +114,21 @@ impl Cycle<'_> {
         for k in 0..self.phases.len() {
             self.weigh(k, lambda, mu, &mut work.phase);
             let p = &self.phases[k];
-            work.phase.adjoint(self.description(), p, lambda, k);
+            work.phase.adjoint(self.description(), &self.units, p, lambda, k);
             work.h_local.fill(0.0);
             self.instant_terms(k, mu, &mut work);
-            work.phase.bilinear(p, &mut work.h_local, self.travel);
+            work.phase.bilinear(p, &mut work.h_local, self.per_work());
             add_transpose(&mut work.h_local, p.layout.len());
             // Θ through the parameters: first order twice, then second order once.
             congruence(&work.h_local, &p.by_theta, n, &mut work.half, hessian);
             self.start_terms(k, lambda, mu, &mut work, hessian);
         }
-        // cost = work/travel: the quotient's own curvature.
+        // The objective is a quotient of work and duration: its own curvature.
         for i in 0..n {
             for j in 0..n {
-                let product =
-                    self.cost_gradient[i] * self.travel_gradient[j] + self.travel_gradient[i] * self.cost_gradient[j];
-                hessian[i * n + j] -= product / self.travel;
+                let product = self.cost_gradient[i] * self.duration_gradient[j]
+                    + self.duration_gradient[i] * self.cost_gradient[j];
+                hessian[i * n + j] -= product / self.duration;
             }
         }
         self.workspace = work;

@@ -9,15 +9,14 @@ use crate::instant::direction;
 impl Cycle<'_> {
     /// ∂L/∂(quantities) of half step `k`, and the gradient of its part of L.
     pub(super) fn weigh(&self, k: usize, lambda: &[f64], mu: &[f64], work: &mut PhaseWork) {
-        let d = self.description();
         let p = &self.phases[k];
         let count = p.instants.quantities.len();
         let nodes = p.mesh.nodes.len();
-        let t = p.duration();
+        let (t, per_work) = (p.duration(), self.per_work());
         work.weights.clear();
         work.weights.resize(nodes * count, 0.0);
         for (node, quantity, partial) in &p.cost.partials {
-            work.weights[node * count + quantity] += t * partial / self.travel;
+            work.weights[node * count + quantity] += t * partial * per_work;
         }
         let weights = &mut work.weights;
         self.weighted_path_rows(mu, |phase, node, constraint, multiplier| {
@@ -35,8 +34,8 @@ impl Cycle<'_> {
                 });
             }
         });
-        let speed = lambda[CLOSURE * self.phases.len()];
-        work.travel = -self.cost / self.travel - speed / d.leg_length();
+        let speed = lambda[self.speed_equation()];
+        work.travel = -speed / self.units.length;
 
         // Gradient in the local parameters: all rows with their weights.
         let np = p.layout.len();
@@ -53,12 +52,12 @@ impl Cycle<'_> {
         let terminal = [
             (work.travel, &p.travel_p[..]),
             (-lambda[CLOSURE * k], &p.stance.beta_p[last..][..np]),
-            (-lambda[CLOSURE * k + 1], &p.stance.sigma_p[last..][..np]),
+            (-lambda[CLOSURE * k + 1] / self.units.angular_momentum(), &p.stance.sigma_p[last..][..np]),
         ];
         for (w, row) in terminal {
             gradient.iter_mut().zip(row).for_each(|(g, r)| *g += w * r);
         }
-        gradient[p.layout.duration()] += p.cost.value / self.travel;
+        gradient[p.layout.duration()] += p.cost.value * per_work;
     }
 }
 

@@ -1,0 +1,176 @@
+//! Robots of one shape are one problem: copies of any size and weight have the same optima and the same verdicts, in their units.
+//! And a speed is one of the robot's units, however small.
+
+#[path = "similarity/copy.rs"]
+mod copy;
+
+use copy::{Copy, Factors};
+use piaffe::gaits::GAITS;
+use piaffe::model::Gait;
+use piaffe::motion::Criterion;
+use piaffe::result::{GaitResult, Status};
+use piaffe::search::multi_start::{Settings, search};
+use piaffe::units::Units;
+
+/// Far below and above all robots.
+const SIZES: [(f64, f64); 4] = [(1e-3, 1e-6), (1e2, 1e6), (1e-3, 1e3), (30.0, 1e-4)];
+
+fn optimize(gait: &dyn Gait, criterion: Criterion, speed: f64, starts: usize) -> GaitResult {
+    let settings = Settings { starts: Some(starts), seed: 1 };
+    let found = search(gait, criterion, speed, &settings, &|_| {});
+    let mut result = GaitResult::new(gait, criterion, speed, &found, settings.seed, || 0.0);
+    result.examine(gait);
+    result
+}
+
+fn named(name: &str) -> &'static dyn Gait {
+    GAITS.iter().copied().find(|g| g.description().key == name).unwrap()
+}
+
+/// A speed at which all shipped gaits go, in m/s.
+fn usual(gait: &dyn Gait) -> f64 {
+    0.3 * Units::new(gait.description()).speed()
+}
+
+/// What a result says of the original's copy by these factors, in the original's units.
+#[derive(Debug, PartialEq)]
+struct Saying {
+    status: Status,
+    cost: f64,
+    durations: Vec<f64>,
+    active: Vec<String>,
+    certified: Option<bool>,
+    prices: Vec<(String, f64)>,
+    eigenvalues: Vec<f64>,
+}
+
+impl Saying {
+    fn of(r: &GaitResult, by: &Factors) -> Saying {
+        let [energy, torque] = by.costs();
+        let unit = if r.criterion == Criterion::Energy { energy } else { torque };
+        let prices = r.optimality.iter().flat_map(|o| o.equations.iter().chain(&o.limits));
+        Saying {
+            status: r.status,
+            cost: r.cost.unwrap_or(f64::NAN) / unit,
+            durations: r.durations.iter().map(|t| t / by.time).collect(),
+            active: r.receipt.iter().flat_map(|receipt| receipt.active.clone()).collect(),
+            certified: r.certificate.as_ref().map(|c| c.is_certified()),
+            prices: prices.map(|p| (p.constraint.clone(), p.value / unit)).collect(),
+            eigenvalues: r.stability.iter().flat_map(|s| s.clock.eigenvalues.concat()).collect(),
+        }
+    }
+}
+
+/// Copies by powers of two are computed with the bits of the original, if nothing has a unit of its own.
+fn has_the_same_bits(gait: &dyn Gait, criterion: Criterion, (length, mass): (f64, f64)) {
+    let name = gait.description().key;
+    let original = optimize(gait, criterion, usual(gait), 1);
+    let by = Factors::new(length, mass);
+    let found = optimize(&Copy::new(gait, by), criterion, usual(gait) * by.speed(), 1);
+    let (said, says) = (Saying::of(&original, &Factors::new(1.0, 1.0)), Saying::of(&found, &by));
+    assert_eq!(says.status, said.status, "{name} {criterion:?} by {by:?}: {}", found.message);
+    // Without an optimum there is no cost, and what is no number equals nothing.
+    assert!(says == said || says.cost.is_nan(), "{name} {criterion:?} by {by:?}: {says:?}, not {said:?}");
+    assert_eq!(found.certificate.map(|c| c.bounds), original.certificate.map(|c| c.bounds), "{name} {criterion:?}");
+}
+
+/// Other copies differ by rounding.
+fn has_the_same_cost(gait: &dyn Gait, criterion: Criterion, sizes: &[(f64, f64)]) {
+    let name = gait.description().key;
+    let original = Saying::of(&optimize(gait, criterion, usual(gait), 2), &Factors::new(1.0, 1.0));
+    for (length, mass) in sizes {
+        let by = Factors::new(*length, *mass);
+        let result = optimize(&Copy::new(gait, by), criterion, usual(gait) * by.speed(), 2);
+        let found = Saying::of(&result, &by);
+        let message = format!("{name} {criterion:?} by {by:?}: {} {found:?}, not {original:?}", result.message);
+        assert_eq!((found.status, found.certified), (original.status, original.certified), "{message}");
+        assert_eq!(found.active, original.active, "{message}");
+        if original.status == Status::Optimal {
+            assert!((found.cost / original.cost - 1.0).abs() < 1e-9, "{message}");
+        }
+    }
+}
+
+#[test]
+fn copies_by_powers_of_two_have_the_same_bits() {
+    let (small, large) = ((2f64.powi(-10), 2f64.powi(-31)), (2f64.powi(6), 2f64.powi(20)));
+    has_the_same_bits(named("trot"), Criterion::Energy, small);
+    has_the_same_bits(named("amble"), Criterion::Torque, large);
+    has_the_same_bits(named("curvet"), Criterion::Torque, small);
+    has_the_same_bits(named("rabbit/walk"), Criterion::Energy, large);
+}
+
+#[test]
+fn copies_of_any_size_and_weight_have_the_same_optima() {
+    has_the_same_cost(named("trot"), Criterion::Torque, &SIZES[..2]);
+    has_the_same_cost(named("rabbit/walk"), Criterion::Energy, &SIZES[2..]);
+}
+
+/// All robots that are shipped, up and down.
+#[test]
+#[ignore = "minutes"]
+fn copies_of_all_gaits_have_the_same_optima() {
+    for gait in GAITS {
+        for criterion in Criterion::ALL {
+            has_the_same_bits(*gait, criterion, (2f64.powi(-10), 2f64.powi(20)));
+            has_the_same_cost(*gait, criterion, &SIZES);
+        }
+    }
+}
+
+/// RABBIT of 2.4 cm and 0.9 g: an independent value.
+#[test]
+fn a_rabbit_of_two_centimetres_walks() {
+    let by = Factors::new(0.03, 2.7e-5);
+    let small = Copy::new(named("rabbit/walk"), by);
+    let result = optimize(&small, Criterion::Energy, 0.10392304845413264, 8);
+    assert!((result.cost.unwrap() / 6.7598158e-4 - 1.0).abs() < 1e-6, "{} {:?}", result.message, result.cost);
+}
+
+/// A cost per metre grows like 1/speed where the robot hardly does more than step in place, and must not decide. What cannot be
+/// told from standing is refused; nothing is an optimum at another speed than the one asked.
+#[test]
+fn slow_gaits_are_right_or_refused_in_words() {
+    for name in ["trot", "rabbit/walk"] {
+        let mut powers = Vec::new();
+        for speed in [1e-3, 1e-4, 1e-6, 1e-9, 1e-12] {
+            let result = optimize(named(name), Criterion::Torque, speed, 2);
+            match result.cost {
+                Some(cost) => {
+                    let travel = result.step_length.unwrap() / result.durations.iter().sum::<f64>();
+                    assert!((travel / speed - 1.0).abs() < 1e-6, "{name} at {speed:e}: walks at {travel:e}");
+                    powers.push(cost * speed);
+                }
+                None => assert!(speed < 1e-5 && !result.message.is_empty(), "{name} at {speed:e}: {}", result.message),
+            }
+        }
+        // That of stepping in place.
+        let [first, .., last] = powers[..] else { panic!("{name}: {powers:?}") };
+        assert!((last / first - 1.0).abs() < 0.05, "{name}: {powers:?}");
+    }
+}
+
+/// What is known to be reached; that of RABBIT's torque from elsewhere too.
+#[test]
+fn gaits_at_low_speeds_are_found() {
+    let slow = [
+        ("trot", Criterion::Energy, 0.001, 835.870),
+        ("rabbit/walk", Criterion::Energy, 0.003, 300.213),
+        ("rabbit/walk", Criterion::Torque, 0.003, 2291.964),
+    ];
+    for (name, criterion, speed, cost) in slow {
+        let result = optimize(named(name), criterion, speed, 8);
+        let found = result.cost.unwrap_or_else(|| panic!("{name} {criterion:?} at {speed}: {}", result.message));
+        assert!(found < cost * (1.0 + 1e-5), "{name} {criterion:?} at {speed}: {found}");
+    }
+}
+
+/// Backwards, too, a metre costs something.
+#[test]
+fn gaits_go_backwards() {
+    for (name, criterion) in [("trot", Criterion::Energy), ("rabbit/walk", Criterion::Torque)] {
+        let result = optimize(named(name), criterion, -0.4, 4);
+        assert_eq!(result.status, Status::Optimal, "{name}: {}", result.message);
+        assert!(result.cost.unwrap() > 0.0 && result.step_length.unwrap() < 0.0, "{name}: {:?}", result.cost);
+    }
+}
