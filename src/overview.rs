@@ -82,7 +82,11 @@ impl Overview {
 
     /// Whether all that is stated follows from the results. `stated` is the file, `self` what was read from it.
     pub fn audit(&self, stated: &Value, results: &[GaitResult]) -> Audit {
-        let found = serde_json::to_value(Overview::new(results, &self.maximum_speeds)).unwrap_or_default();
+        let mut found = Overview::new(results, &self.maximum_speeds);
+        for (found, stated) in found.maximum_speeds.iter_mut().zip(&self.maximum_speeds) {
+            found.ended_by.clone_from(&stated.ended_by);
+        }
+        let found = serde_json::to_value(found).unwrap_or_default();
         let entries = stated.as_object().into_iter().flatten();
         let statements = entries.map(|(key, value)| Statement::of(key, value, &found[key])).collect();
         Audit { name: "a sweep's overview".into(), statements }
