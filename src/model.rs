@@ -9,6 +9,7 @@ pub mod family;
 mod numbers;
 pub mod whole;
 
+use crate::motion::Costs;
 pub use numbers::Lever;
 use std::borrow::Cow;
 
@@ -196,6 +197,17 @@ impl Description {
 
     pub fn total_mass(&self) -> f64 {
         self.bodies.iter().map(|b| b.mass).sum()
+    }
+
+    /// N.
+    pub fn weight(&self) -> f64 {
+        self.total_mass() * self.gravity
+    }
+
+    /// Energy per weight and distance, E/(m g d): a number without a unit, by which robots of any size compare. It is that of
+    /// the motion with these costs, whichever of them it minimizes.
+    pub fn cost_of_transport(&self, costs: &Costs) -> f64 {
+        costs.energy / self.weight()
     }
 
     /// Number of half steps that define the gait.

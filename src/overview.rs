@@ -94,7 +94,7 @@ impl Overview {
 
     /// What is told beside the points.
     pub fn extremes(self) -> Extremes {
-        Extremes { maximum_speeds: self.maximum_speeds, comparisons: self.comparisons }
+        Extremes { maximum_speeds: self.maximum_speeds }
     }
 }
 

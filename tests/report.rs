@@ -5,6 +5,7 @@ mod browser;
 
 use base64::Engine;
 use browser::Browser;
+use piaffe::gaits::GAITS;
 use piaffe::result::GaitResult;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -125,6 +126,25 @@ fn pointing_at_a_curve_tells_its_values_and_a_click_goes_there() {
     assert!(b.errors().is_empty(), "{:?}", b.errors());
 }
 
+/// What is drawn that is not there, sticks out of its drawing, or lies on another text.
+const FLAWS: &str = "
+    [...document.querySelectorAll('figure')].flatMap(f => {
+        const svg = f.querySelector('svg'), name = f.dataset.figure, box = svg.getBoundingClientRect();
+        const texts = [...svg.querySelectorAll('text')].map(t => [t.textContent, t.getBoundingClientRect()]);
+        const flaws = [];
+        if (svg.querySelectorAll('path').length < 3) flaws.push(name + ' is empty');
+        texts.forEach(([t, a], i) => {
+            if (a.left < box.left - 1 || a.right > box.right + 1 || a.top < box.top - 1 || a.bottom > box.bottom + 1)
+                flaws.push(`${name}: ${t} sticks out`);
+            texts.slice(i + 1).forEach(([u, b]) => {
+                const w = Math.min(a.right, b.right) - Math.max(a.left, b.left);
+                const h = Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top);
+                if (w > 1 && h > 3) flaws.push(`${name}: ${t} and ${u} overlap`);
+            });
+        });
+        return flaws;
+    })";
+
 #[test]
 fn the_page_needs_nothing_else_and_fits_desk_and_phone() {
     for (name, width, height, phone) in [("desk.png", 1280, 1500, false), ("phone.png", 390, 844, true)] {
@@ -135,24 +155,7 @@ fn the_page_needs_nothing_else_and_fits_desk_and_phone() {
         assert!(b.errors().is_empty(), "{:?}", b.errors());
         assert!(number(b.eval("document.documentElement.scrollWidth")) <= f64::from(width), "{name} is too wide");
         // What is drawn is there, within its drawing, and no text lies on another.
-        let flaws = b.eval(
-            "[...document.querySelectorAll('figure')].flatMap(f => {
-                const svg = f.querySelector('svg'), name = f.dataset.figure, box = svg.getBoundingClientRect();
-                const texts = [...svg.querySelectorAll('text')].map(t => [t.textContent, t.getBoundingClientRect()]);
-                const flaws = [];
-                if (svg.querySelectorAll('path').length < 3) flaws.push(name + ' is empty');
-                texts.forEach(([t, a], i) => {
-                    if (a.left < box.left - 1 || a.right > box.right + 1 || a.top < box.top - 1 || a.bottom > box.bottom + 1)
-                        flaws.push(`${name}: ${t} sticks out`);
-                    texts.slice(i + 1).forEach(([u, b]) => {
-                        const w = Math.min(a.right, b.right) - Math.max(a.left, b.left);
-                        const h = Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top);
-                        if (w > 1 && h > 3) flaws.push(`${name}: ${t} and ${u} overlap`);
-                    });
-                });
-                return flaws;
-            })",
-        );
+        let flaws = b.eval(FLAWS);
         assert_eq!(flaws, serde_json::json!([]), "{name}");
         // A moment in the middle of a swing.
         let show = "document.querySelector(\"TROT\").scrollIntoView({ behavior: 'instant' });
@@ -167,7 +170,15 @@ fn the_numbers_are_those_of_the_results() {
     let html = std::fs::read_to_string(report().join("index.html")).unwrap();
     for gait in ["trot", "amble", "curvet"] {
         let r = result(gait);
-        assert!(html.contains(&format!("<p class=\"cost\">{:.4} ", r.cost.unwrap())), "{gait}");
+        // Six significant digits of the cost, three of the cost of transport.
+        let cost = r.cost.unwrap();
+        let digits = 5 - cost.log10().floor() as usize;
+        assert!(html.contains(&format!("<p class=\"cost\">{cost:.digits$} ")), "{gait}");
+        let description = GAITS.iter().map(|g| g.description()).find(|d| d.key == gait).unwrap();
+        let weight = description.bodies.iter().map(|b| b.mass).sum::<f64>() * description.gravity;
+        let transport = r.costs.unwrap().energy / weight;
+        let digits = (2.0 - transport.log10().floor()) as usize;
+        assert!(html.contains(&format!("<td class=\"n\">{transport:.digits$}</td>")), "{gait}: {transport}");
         for finding in &r.receipt.unwrap().findings {
             assert!(html.contains(&finding.constraint), "{gait}: {}", finding.constraint);
         }
@@ -215,10 +226,15 @@ fn what_cannot_be_shown_is_said() {
     assert!(attempt(&other).contains("another robot"));
     let mut cheaper = good.clone();
     cheaper["cost"] = (good["cost"].as_f64().unwrap() * 0.99).into();
-    assert!(attempt(&cheaper).contains("contradicts itself"));
+    assert!(attempt(&cheaper).contains("is not confirmed"));
+    // Someone edits the speed: the motion is no answer to that question.
+    let mut faster = good.clone();
+    faster["speed"] = 1.2.into();
+    let told = attempt(&faster);
+    assert!(told.contains("is not confirmed") && told.contains("no optimum"), "{told}");
     let mut short = good.clone();
     short["variables"][0]["q_final"] = serde_json::json!([0.1]);
-    assert!(attempt(&short).contains("contradicts itself"));
+    assert!(attempt(&short).contains("is not confirmed"));
     let mut unknown = good.clone();
     unknown["gait"] = "gallop".into();
     assert!(attempt(&unknown).contains("no gait `gallop`"));
@@ -235,5 +251,224 @@ fn the_same_results_give_the_same_bytes() {
     let read = |at: &Path, name: &str| std::fs::read(at.join(name)).unwrap();
     for name in ["index.html", "figures/trot-torque-0.6-torques.svg", "figures/trot-torque-0.6-torques.pdf"] {
         assert!(read(folder.path(), name) == read(&report(), name), "{name} differs");
+    }
+}
+
+#[test]
+fn every_gait_says_what_stands_behind_it_and_what_does_not() {
+    let html = std::fs::read_to_string(report().join("index.html")).unwrap();
+    let head = |gait: &str| {
+        let section = html.split(&format!("<section class=\"walk\" id=\"{gait}-torque-0.6\">")).nth(1).unwrap();
+        section.split("</ul>").next().unwrap().to_string()
+    };
+    for gait in ["trot", "amble", "curvet"] {
+        let head = head(gait);
+        assert!(head.contains("Receipt") && head.contains("<b class=\"holds\">holds</b>"), "{head}");
+        assert!(head.contains("Between the instants") && head.contains("<b class=\"holds\">certified</b>"), "{head}");
+    }
+    assert!(head("trot").contains("<b class=\"holds\">equal shares</b>"));
+    // The real amble cannot be done so: no green mark stands there.
+    let amble = head("amble");
+    assert!(amble.contains("<b class=\"fails\">beyond limits</b>") && amble.contains("% of the step"), "{amble}");
+    let overview = html.split("id=\"overview\"").nth(1).unwrap().split("</section>").next().unwrap();
+    assert_eq!(overview.matches(">beyond limits</span>").count(), 2, "in the comparison and among all results");
+    // Which is better, by how much: the trot is a third of the amble.
+    let ratio = result("amble").cost.unwrap() / result("trot").cost.unwrap();
+    assert!(overview.contains("the best") && overview.contains(&format!("×{ratio:.2}")), "{overview}");
+}
+
+/// The report of a copy of a folder's results, some of them changed, and the page, if there is one.
+fn changed(results: &Path, change: impl Fn(&str, &mut Value)) -> (Output, Option<String>) {
+    let folder = tempfile::tempdir().unwrap();
+    for file in std::fs::read_dir(results).unwrap().map(|e| e.unwrap().path()) {
+        if file.extension().is_some_and(|e| e == "json") {
+            let name = file.file_name().unwrap().to_str().unwrap();
+            let mut value: Value = serde_json::from_slice(&std::fs::read(&file).unwrap()).unwrap();
+            change(name, &mut value);
+            std::fs::write(folder.path().join(name), value.to_string()).unwrap();
+        }
+    }
+    let out = folder.path().join("report");
+    let done = piaffe(&["report", folder.path().to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    (done, std::fs::read_to_string(out.join("index.html")).ok())
+}
+
+#[test]
+fn what_is_not_confirmed_is_shown_as_that_among_others() {
+    let (_, html) = changed(RESULTS.path(), |name, value| {
+        if name == "trot.json" {
+            value["speed"] = 1.2.into();
+            value["message"] = "the best gait ever".into();
+        }
+    });
+    let html = html.unwrap();
+    assert!(html.contains("2 local optima") && html.contains("One result could not be confirmed"));
+    assert!(html.contains("Not confirmed") && html.contains("trot-torque-1.2 is not confirmed"));
+    assert!(!html.contains("id=\"trot-torque-1.2\""), "its walk is shown");
+    assert!(!html.contains("least torque at 1.2 m/s"), "its claim is repeated");
+    // Nor is anything else believed that is said of a motion.
+    let (_, html) = changed(RESULTS.path(), |name, value| {
+        if name == "amble.json" {
+            value["real_legs"]["support"]["margin"] = 1.0.into();
+        }
+    });
+    let html = html.unwrap();
+    assert!(html.contains("amble-torque-0.6 is not confirmed") && !html.contains("id=\"amble-torque-0.6\""));
+}
+
+/// A sweep of two gaits, with a crossing, greatest speeds and a jump of the amble's.
+static SWEEP: LazyLock<tempfile::TempDir> = LazyLock::new(|| {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["sweep", "--gait", "trot", "--gait", "amble", "--starts", "2"];
+    let more = ["--speeds", "0.4,0.5,0.6,1.0,1.05", "--out", folder.path().to_str().unwrap()];
+    let out = piaffe(&[&arguments[..], &more].concat());
+    assert!(out.status.success(), "{}", text(&out.stderr));
+    folder
+});
+
+/// The points of a sweep, by speed.
+fn points(gait: &str, criterion: &str) -> Vec<(f64, f64, f64)> {
+    let summary: Value = serde_json::from_slice(&std::fs::read(SWEEP.path().join("sweep.json")).unwrap()).unwrap();
+    let of_gait = summary["points"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(|p| [&p["gait"], &p["criterion"], &p["status"]] == [gait, criterion, "optimal"]);
+    of_gait
+        .map(|p| [&p["speed"], &p["cost"], &p["durations"][0]].map(|v| number(v.clone())))
+        .map(|[v, c, t]| (v, c, t))
+        .collect()
+}
+
+#[test]
+fn a_sweeps_page_says_what_it_draws() {
+    for (width, height, phone) in [(1280, 1500, false), (390, 844, true)] {
+        let Some(mut b) = Browser::open(width, height, phone) else { return };
+        b.load(&format!("file://{}", SWEEP.path().join("index.html").display()));
+        assert_eq!(b.eval(FLAWS), serde_json::json!([]));
+        assert!(b.errors().is_empty(), "{:?}", b.errors());
+        keep(&mut b, if phone { "sweep-phone.png" } else { "sweep-desk.png" });
+        let pills = b.eval("[...document.querySelectorAll('nav a')].map(a => a.innerText)");
+        let mut pills: Vec<&str> = pills.as_array().unwrap().iter().map(|p| p.as_str().unwrap()).collect();
+        let count = pills.len();
+        pills.sort_unstable();
+        pills.dedup();
+        assert_eq!(pills.len(), count, "{pills:?}");
+
+        // The ring of the crossing is where the lines cross, and the words have its speed.
+        let figure = "document.querySelector(\"[data-figure='overview/speed-energy']\")";
+        let data =
+            "JSON.parse(document.querySelector(\"script[data-of='overview']\").textContent).figures['speed-energy']";
+        let rings = b.eval(&format!(
+            "[...{figure}.querySelectorAll(\"circle[r='5.2']\")].map(c => [+c.getAttribute('cx'), +c.getAttribute('cy')])"
+        ));
+        let curves = b.eval(&format!("{data}.curves"));
+        let (x, y) = (b.eval(&format!("{data}.x")), b.eval(&format!("{data}.y")));
+        let place = |axis: &Value, value: f64| {
+            let [a, b, from, to] = [&axis["domain"][0], &axis["domain"][1], &axis["range"][0], &axis["range"][1]]
+                .map(|v| number(v.clone()));
+            from + (value - a) / (b - a) * (to - from)
+        };
+        let at = |curve: &Value, speed: f64| {
+            let [xs, ys] =
+                ["x", "y"].map(|k| curve[k].as_array().unwrap().iter().map(|v| number(v.clone())).collect::<Vec<_>>());
+            let k = xs.iter().rposition(|v| *v <= speed).unwrap().min(xs.len() - 2);
+            ys[k] + (speed - xs[k]) / (xs[k + 1] - xs[k]) * (ys[k + 1] - ys[k])
+        };
+        let told = b.eval("document.querySelector('#overview').innerText").as_str().unwrap().to_string();
+        let line = told
+            .lines()
+            .find(|l| l.contains("energy: the amble overtakes the trot "))
+            .unwrap_or_else(|| panic!("{told}"));
+        let said: Vec<f64> = line.split(' ').filter_map(|word| word.parse().ok()).collect();
+        let ring: Vec<f64> =
+            rings.as_array().unwrap().last().unwrap().as_array().unwrap().iter().map(|v| number(v.clone())).collect();
+        // "at 1.083 m/s", or "between 1.0 and 1.1 m/s".
+        let [from, to] = [said[0], said[said.len() - 1]];
+        assert!((place(&x, from) - 0.5..=place(&x, to) + 0.5).contains(&ring[0]), "{line}: {ring:?}");
+        let [first, last] = [number(x["domain"][0].clone()), number(x["domain"][1].clone())];
+        let [left, right] = [number(x["range"][0].clone()), number(x["range"][1].clone())];
+        let speed = first + (ring[0] - left) / (right - left) * (last - first);
+        for curve in curves.as_array().unwrap() {
+            let drawn = place(&y, at(curve, speed));
+            assert!((ring[1] - drawn).abs() < 1.0, "{line}: {ring:?}, but {} is at {drawn}", curve["name"]);
+        }
+
+        // What is told under the pointer are a point's own numbers.
+        let svg = format!("{} svg", "[data-figure='overview/speed-energy']");
+        let middle = b.middle(&svg);
+        let mut speeds = std::collections::BTreeSet::new();
+        for step in 0..24 {
+            b.mouse("mouseMoved", [middle[0] - 120.0 + 10.0 * f64::from(step), middle[1]]);
+            let told = b.eval("document.getElementById('tip').innerText").as_str().unwrap().to_string();
+            let told: Vec<&str> = told.lines().collect();
+            let speed: f64 = told[0].split(' ').nth(1).unwrap().parse().unwrap();
+            speeds.insert(told[0].to_string());
+            for line in &told[1..] {
+                let gait = line.split([' ', '(']).next().unwrap();
+                let cost: f64 = line.split_whitespace().rev().nth(1).unwrap().parse().unwrap();
+                let near = |a: f64, b: f64| (a - b).abs() <= 1e-4 * b.abs();
+                assert!(points(gait, "energy").iter().any(|p| near(p.0, speed) && near(p.1, cost)), "{told:?}");
+            }
+        }
+        assert!(speeds.len() > 3, "{speeds:?}");
+    }
+}
+
+#[test]
+fn a_jump_to_another_branch_is_no_slope() {
+    // The amble of least torque takes steps of 0.16 s at 0.4 m/s and of 0.26 s at 0.5 m/s: another branch.
+    let amble = points("amble", "torque");
+    let jumps: Vec<_> = amble.windows(2).filter(|w| w[1].2 / w[0].2 > 1.4).map(|w| [w[0], w[1]]).collect();
+    assert!(!jumps.is_empty(), "{amble:?}");
+    let smooth: Vec<_> = amble
+        .windows(2)
+        .filter(|w| (w[1].2 / w[0].2 - 1.0).abs() < 0.1 && w[1].0 - w[0].0 < 0.15)
+        .map(|w| [w[0], w[1]])
+        .collect();
+    assert!(!smooth.is_empty(), "{amble:?}");
+    let Some(mut b) = Browser::open(1280, 900, false) else { return };
+    b.load(&format!("file://{}", SWEEP.path().join("index.html").display()));
+    let data =
+        b.eval("JSON.parse(document.querySelector(\"script[data-of='overview']\").textContent).figures.durations");
+    let place = |axis: &str, value: f64| {
+        let axis = &data[axis];
+        let [a, b, from, to] =
+            [&axis["domain"][0], &axis["domain"][1], &axis["range"][0], &axis["range"][1]].map(|v| number(v.clone()));
+        from + (value - a) / (b - a) * (to - from)
+    };
+    let mut drawn = |from: (f64, f64, f64), to: (f64, f64, f64)| {
+        let point = |p: (f64, f64, f64)| [place("x", p.0), place("y", p.2)];
+        let ends = serde_json::json!([point(from), point(to)]);
+        b.eval(&format!(
+            "(() => {{ const [a, b] = {ends}, near = (p, q) => Math.hypot(p[0] - q[0], p[1] - q[1]) < 0.1;
+              return [...document.querySelectorAll(\"[data-figure='overview/durations'] path\")].some(path => {{
+                const points = path.getAttribute('d').slice(1).split('L').map(t => t.split(' ').map(Number));
+                return points.some((p, k) => k > 0 && near(points[k - 1], a) && near(p, b)); }}) }})()"
+        )) == true
+    };
+    for [from, to] in jumps {
+        assert!(!drawn(from, to), "a slope from {from:?} to {to:?}");
+    }
+    for [from, to] in smooth {
+        assert!(drawn(from, to), "no line from {from:?} to {to:?}");
+    }
+}
+
+#[test]
+fn a_sweeps_own_account_is_not_believed() {
+    type Change = fn(&mut Value);
+    let changes: [Change; 2] = [
+        |sweep| sweep["maximum_speeds"][0]["speed"] = 99.0.into(),
+        |sweep| sweep["comparisons"][0]["crossovers"][0]["bracket"][0] = 0.41.into(),
+    ];
+    for change in changes {
+        let (done, html) = changed(SWEEP.path(), |name, value| {
+            if name == "sweep.json" {
+                change(value);
+            }
+        });
+        assert_eq!((done.status.code(), html), (Some(1), None));
+        assert!(text(&done.stderr).contains("sweep.json"), "{}", text(&done.stderr));
     }
 }

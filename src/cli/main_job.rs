@@ -4,8 +4,8 @@ use super::digits::decimal;
 use super::optimize::{progress, solve};
 use super::{first_robot, output, report};
 use piaffe::motion::Criterion;
-use piaffe::report::Extremes;
-use piaffe::result::{GaitResult, Receipt};
+use piaffe::report::{Extremes, Record};
+use piaffe::result::Receipt;
 use piaffe::search::local::Task;
 use piaffe::search::multi_start::Settings;
 use std::io::Write;
@@ -36,11 +36,12 @@ pub fn run(folder: &Path) -> anyhow::Result<bool> {
     std::fs::create_dir_all(folder).map_err(|e| anyhow::anyhow!("cannot create {}: {e}", folder.display()))?;
     output::say!("Optimal gaits at {SPEED} m/s\n");
     output::say!(
-        "{:<8} {:<9} {:>10} {:<7} {:<13} {:>9} {:>9} {:>9}  {:>10} {:<12} active  between    real legs",
+        "{:<8} {:<9} {:>10} {:<7} {:>6} {:<13} {:>9} {:>9} {:>9}  {:>10} {:<12} active  between    real legs",
         "gait",
         "criterion",
         "cost",
         "unit",
+        "E/mgd",
         "half steps, s",
         "violation",
         "cycle",
@@ -54,37 +55,39 @@ pub fn run(folder: &Path) -> anyhow::Result<bool> {
     gaits.sort_by_key(|g| PUBLISHED.iter().position(|p| p.gait == g.description().gait));
     let bar = progress(settings.starts);
     let searches = gaits.len() * Criterion::ALL.len();
-    let mut results = Vec::new();
+    let mut records: Vec<Record> = Vec::new();
     for criterion in Criterion::ALL {
         for gait in &gaits {
             let name = gait.description().gait;
-            bar.set_message(format!("{name}, {} ({} of {searches})", criterion.name(), results.len() + 1));
+            bar.set_message(format!("{name}, {} ({} of {searches})", criterion.name(), records.len() + 1));
             let mut result = solve(Task { gait: *gait, criterion, speed: SPEED }, &[], &settings, &bar);
             result.examine(*gait);
             output::write_json(&folder.join(format!("{name}-{}.json", criterion.name())), &result)?;
-            bar.suspend(|| output::quiet_when_closed(row(&result)))?;
-            results.push(result);
+            let record = Record::issued(result, *gait);
+            bar.suspend(|| output::quiet_when_closed(row(&record)))?;
+            records.push(record);
         }
     }
     bar.finish_and_clear();
-    let starts = || results.iter().map(|r| r.search.effort.starts);
+    let starts = || records.iter().map(|r| r.result.search.effort.starts);
     let (fewest, most) = (starts().min().unwrap_or(0), starts().max().unwrap_or(0));
     let starts = if fewest == most { most.to_string() } else { format!("{fewest} to {most}") };
     output::say!(
         "\nEvery optimum is local: the best of {starts} starts. The paper does not give all of the robot's parameters"
     );
     output::say!("(see model-spec/robot.toml), so its values are a yardstick, not a like-for-like comparison.");
-    let all = results.iter().all(GaitResult::is_optimal);
-    let any = results.iter().any(GaitResult::is_optimal);
+    let all = records.iter().all(Record::is_confirmed);
+    let any = records.iter().any(Record::is_confirmed);
     output::say!("{:.1} s; results in {}", started.elapsed().as_secs_f64(), folder.display());
     if any {
-        let page = report::write(results, Extremes::default(), None, folder)?;
+        let page = report::write(records, Extremes::default(), None, folder)?;
         output::say!("To be seen in {}", page.display());
     }
     Ok(all)
 }
 
-fn row(r: &GaitResult) -> std::io::Result<()> {
+fn row(record: &Record) -> std::io::Result<()> {
+    let r = &record.result;
     let mut out = output::person();
     let durations: Vec<String> = r.durations.iter().map(|t| decimal(*t, 3)).collect();
     let published = PUBLISHED.iter().find(|p| p.gait == r.gait && p.criterion == r.criterion);
@@ -92,11 +95,12 @@ fn row(r: &GaitResult) -> std::io::Result<()> {
     match (r.cost, &r.receipt) {
         (Some(cost), Some(receipt @ Receipt { kkt_residual: Some(kkt), .. })) => writeln!(
             out,
-            "{:<8} {:<9} {:>10} {:<7} {:<13} {:>9.1e} {:>9.1e} {:>9.1e}  {paper:>10} {paper_steps:<12} {:<6}  {:<9}  {}",
+            "{:<8} {:<9} {:>10} {:<7} {:>6.4} {:<13} {:>9.1e} {:>9.1e} {:>9.1e}  {paper:>10} {paper_steps:<12} {:<6}  {:<9}  {}",
             r.gait,
             r.criterion.name(),
             decimal(cost, 4),
             r.criterion.unit(),
+            record.cost_of_transport().unwrap_or(f64::NAN),
             durations.join("/"),
             receipt.max_violation,
             receipt.cycle_error,

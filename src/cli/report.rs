@@ -4,8 +4,7 @@ use super::document::{self, Document, OVERVIEW, Stated};
 use super::{input, output, whole};
 use anyhow::{Context, bail};
 use piaffe::gaits::GAITS;
-use piaffe::readback::Readback;
-use piaffe::report::{Extremes, Report};
+use piaffe::report::{Extremes, Record, Report};
 use piaffe::result::GaitResult;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
@@ -37,9 +36,7 @@ pub fn run(paths: &[PathBuf], detail: Option<f64>, out: &Path) -> anyhow::Result
                             d.place
                         );
                     }
-                    let more = sweep.overview.extremes();
-                    extremes.maximum_speeds.extend(more.maximum_speeds);
-                    extremes.comparisons.extend(more.comparisons);
+                    extremes.maximum_speeds.extend(sweep.overview.extremes().maximum_speeds);
                     sweep.results.into_iter().map(Ok).collect()
                 }
                 Err(error) => vec![Err(error)],
@@ -58,14 +55,13 @@ pub fn run(paths: &[PathBuf], detail: Option<f64>, out: &Path) -> anyhow::Result
     if all.is_empty() && unread > 0 {
         bail!("none of the results could be read");
     }
-    let read = |result: GaitResult| match result.is_optimal() {
-        true => Readback::new(result, GAITS).map(|readback| readback.result),
-        false => Ok(result),
-    };
-    let mut results = different(all)?.into_par_iter().map(read).collect::<Result<Vec<_>, _>>()?;
+    let mut records: Vec<Record> = different(all)?.into_par_iter().map(|result| Record::read(result, GAITS)).collect();
     let place = |r: &GaitResult| GAITS.iter().position(|g| g.description().key == r.gait);
-    results.sort_by(|a, b| (a.criterion, place(a)).cmp(&(b.criterion, place(b))).then(a.speed.total_cmp(&b.speed)));
-    let index = write(results, extremes, detail, out)?;
+    records.sort_by(|a, b| {
+        let (a, b) = (&a.result, &b.result);
+        (a.criterion, place(a)).cmp(&(b.criterion, place(b))).then(a.speed.total_cmp(&b.speed))
+    });
+    let index = write(records, extremes, detail, out)?;
     output::say!("{}", index.display());
     if unread > 0 {
         bail!("{unread} results could not be read: the report is without them");
@@ -90,8 +86,8 @@ fn different(all: Vec<Stated>) -> anyhow::Result<Vec<GaitResult>> {
 }
 
 /// Writes the report of these results; tells where its page is.
-pub fn write(results: Vec<GaitResult>, extremes: Extremes, detail: Option<f64>, out: &Path) -> anyhow::Result<PathBuf> {
-    let report = Report::new(results, extremes, detail, GAITS)?;
+pub fn write(records: Vec<Record>, extremes: Extremes, detail: Option<f64>, out: &Path) -> anyhow::Result<PathBuf> {
+    let report = Report::new(records, extremes, detail)?;
     let figures = out.join("figures");
     std::fs::create_dir_all(&figures).with_context(|| format!("cannot create {}", input::name(&figures)))?;
     [out, &figures].into_iter().for_each(whole::tidy);

@@ -72,6 +72,10 @@ pub fn print(description: &Description, r: &GaitResult) -> std::io::Result<()> {
             writeln!(out, "  {:<15} {} {}", criterion.name(), decimal(costs.of(criterion), 4), criterion.unit())?;
         }
     }
+    if let Some(costs) = &r.costs {
+        let transport = description.cost_of_transport(costs);
+        writeln!(out, "  of transport    {transport:.4} (energy per weight and distance)")?;
+    }
     if let Some(step) = r.step_length {
         let durations: Vec<String> = r.durations.iter().map(|t| format!("{} s", decimal(*t, 4))).collect();
         writeln!(out, "  half steps      {}", durations.join(" + "))?;

@@ -9,6 +9,7 @@ use piaffe::altered::Altered;
 use piaffe::model::Gait;
 use piaffe::motion::Criterion;
 use piaffe::overview::{Greatest, Overview};
+use piaffe::report::Record;
 use piaffe::result::GaitResult;
 use piaffe::search::atlas::{VISITS, sweep};
 use piaffe::search::crossover::{Comparison, solve};
@@ -52,6 +53,8 @@ pub fn run(
     for (line, c, results) in further {
         lines[line].add(c, results);
     }
+    folder.bar.set_message("examination");
+    lines.par_iter_mut().for_each(Line::examine);
     folder.bar.finish_and_clear();
     if let Some(error) = folder.failure() {
         return Err(error);
@@ -66,7 +69,8 @@ pub fn run(
     output::say!("results in {}", path.display());
     let any = all().any(GaitResult::is_optimal);
     if any {
-        let page = report::write(all().cloned().collect(), overview.extremes(), None, path)?;
+        let records = lines.iter().flat_map(Line::records).collect();
+        let page = report::write(records, overview.extremes(), None, path)?;
         output::say!("To be seen in {}", page.display());
     }
     Ok(any)
@@ -103,6 +107,16 @@ impl Line {
                 line.insert(place, result);
             }
         }
+    }
+
+    /// Adds to all results what is told beyond their verdict.
+    fn examine(&mut self) {
+        let gait = self.gait;
+        self.results.par_iter_mut().flatten().for_each(|result| result.examine(gait));
+    }
+
+    fn records(&self) -> Vec<Record<'static>> {
+        self.results.iter().flatten().map(|r| Record::issued(r.clone(), self.gait)).collect()
     }
 }
 

@@ -1,6 +1,6 @@
 //! The certificate in words: what is proven for all times, and where the proof ends.
 
-use super::page::scientific;
+use super::number::{digits, scientific};
 use crate::certificate::{Certificate, Gap};
 use maud::{Markup, html};
 
@@ -39,7 +39,7 @@ fn unproven(gap: &Gap) -> Markup {
         (false, None) => "nothing could be proven".to_string(),
     };
     html! {
-        li { b { (gap.constraint) } ", half step " (gap.half_step) ", from " (format!("{:.6}", gap.from)) " to " (format!("{:.6}", gap.to))
+        li { b { (gap.constraint) } ", half step " (gap.half_step) ", from " (digits(gap.from, 6)) " to " (digits(gap.to, 6))
             " s: " (verdict) "." }
     }
 }

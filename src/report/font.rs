@@ -130,6 +130,21 @@ impl Weight {
         let advance = |c: char| face.glyphs.get(&c).map_or(0, |glyph| face.advances[usize::from(*glyph)]);
         text.chars().map(|c| f64::from(advance(c))).sum::<f64>() * size / face.units_per_em
     }
+
+    /// A text that is no wider than `room`: shortened at its end if need be.
+    pub fn fit(self, text: &str, size: f64, room: f64) -> String {
+        if self.width(text, size) <= room {
+            return text.into();
+        }
+        let mut letters: Vec<char> = text.chars().collect();
+        while letters.pop().is_some() {
+            let short = format!("{}…", letters.iter().collect::<String>().trim_end());
+            if self.width(&short, size) <= room {
+                return short;
+            }
+        }
+        String::new()
+    }
 }
 
 #[cfg(test)]
@@ -159,6 +174,17 @@ mod tests {
         let whole = Weight::Regular.bytes();
         for length in [0, 1, 11, 12, 40, 300] {
             assert!(Face::read(&whole[..length]).is_none(), "{length}");
+        }
+    }
+
+    #[test]
+    fn a_text_is_shortened_to_its_room_and_no_further() {
+        let text = "torque–speed of a_joint_with_a_very_long_name";
+        for room in [20.0, 80.0, 150.0, 400.0] {
+            let short = Weight::Regular.fit(text, 11.0, room);
+            assert!(Weight::Regular.width(&short, 11.0) <= room, "{short}");
+            assert!(short == text || short.ends_with('…'));
+            assert!(short == text || Weight::Regular.width(&short, 11.0) > room - 20.0, "{short}");
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::figure::Figure;
 use super::ink::Ink;
+use super::number::given;
 use super::plot::{Curve, Limit, Plot};
 use super::scale::domain;
 use super::subject::Subject;
@@ -40,21 +41,16 @@ fn symmetric(plot: &mut Plot, limits: &[f64], peak: f64, unit: &str) {
     let [from, to] = [plot.x.domain.unwrap_or_default()[0], plot.x.domain.unwrap_or_default()[1]];
     for limit in near {
         for sign in [1.0, -1.0] {
-            let name = format!("limit {}{}", if sign < 0.0 { "−" } else { "" }, brief(limit));
+            let name = format!("limit {}{}", if sign < 0.0 { "−" } else { "" }, given(limit));
             plot.limits.push(Limit { name, points: vec![[from, sign * limit], [to, sign * limit]] });
         }
     }
     let values = plot.curves.iter().flat_map(|c| c.segments.iter().flatten()).map(|p| p[1]);
     plot.y.domain = Some(domain(values.chain(plot.limits.iter().map(|l| l.points[0][1]))));
     if !far.is_empty() {
-        let list: Vec<String> = far.iter().map(|l| format!("±{}", brief(*l))).collect();
+        let list: Vec<String> = far.iter().map(|l| format!("±{}", given(*l))).collect();
         plot.note = Some(format!("limits {} {unit}: beyond this axis", list.join(" and ")));
     }
-}
-
-fn brief(value: f64) -> String {
-    let text = format!("{value:.1}");
-    text.strip_suffix(".0").map_or(text.clone(), str::to_string)
 }
 
 /// Angles, a plot per kind of joint, each between its stops; and the platform's rotation.
@@ -68,7 +64,8 @@ pub fn angles(s: &Subject) -> Vec<Figure> {
             plot.curves = s.joint_curves(joints.iter().copied(), |m, j| m.q[j]);
             let [from, to] = plot.x.domain.unwrap_or_default();
             for stop in d.joints[joints[0]].range {
-                plot.limits.push(Limit { name: format!("stop {stop:.3}"), points: vec![[from, stop], [to, stop]] });
+                plot.limits
+                    .push(Limit { name: format!("stop {}", given(stop)), points: vec![[from, stop], [to, stop]] });
             }
             let values = plot.curves.iter().flat_map(|c| c.segments.iter().flatten()).map(|p| p[1]);
             plot.y.domain = Some(roomy(values.chain(d.joints[joints[0]].range)));

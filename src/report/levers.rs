@@ -1,5 +1,6 @@
 //! What to change to lower the criterion: the slopes of the optimum, ranked.
 
+use super::number::{digits, given};
 use crate::result::GaitResult;
 use crate::sensitivity::Sensitivity;
 use maud::{Markup, html};
@@ -33,24 +34,7 @@ pub fn section(r: &GaitResult) -> Markup {
 fn row(s: &Sensitivity, unit: &str) -> Markup {
     let per = if s.unit.is_empty() { String::new() } else { format!(" per {}", s.unit) };
     html! {
-        tr { td { (s.parameter) } td.n { (significant(s.value)) " " (s.unit) }
-            td.n { b { (significant(s.elasticity)) } } td.n { (significant(s.slope)) " " (unit) (per) } }
-    }
-}
-
-/// Four significant digits, with the minus sign of a reader.
-fn significant(value: f64) -> String {
-    let digits = if value == 0.0 { 0.0 } else { 3.0 - value.abs().log10().floor() };
-    format!("{value:.*}", digits.clamp(0.0, 9.0) as usize).replace('-', "−")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn four_digits_of_anything() {
-        let written = [6600.0, 0.139, -0.261_84, 0.0, 12_345.6, 0.000_412_34].map(significant);
-        assert_eq!(written, ["6600", "0.1390", "−0.2618", "0", "12346", "0.0004123"]);
+        tr { td { (s.parameter) } td.n { (given(s.value)) " " (s.unit) }
+            td.n { b { (digits(s.elasticity, 4)) } } td.n { (digits(s.slope, 4)) " " (unit) (per) } }
     }
 }

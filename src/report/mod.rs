@@ -5,6 +5,7 @@
 
 mod atlas;
 mod certificate;
+mod compare;
 mod envelope;
 mod figure;
 mod font;
@@ -12,7 +13,9 @@ mod footfall;
 mod ink;
 mod joints;
 mod levers;
+mod marks;
 mod momentum;
+mod number;
 mod page;
 mod pdf;
 mod player;
@@ -21,6 +24,7 @@ mod power;
 mod price;
 mod reaction;
 mod real_legs;
+mod record;
 mod recovery;
 mod scale;
 mod scene;
@@ -30,23 +34,19 @@ mod svg;
 mod swing;
 mod words;
 
+pub use atlas::Extremes;
 pub use figure::Figure;
+pub use record::{Record, Standing};
 pub use subject::Subject;
 
-use crate::model::Gait;
-use crate::readback::Unusable;
-use crate::result::GaitResult;
 use crate::stance::Undefined;
 use atlas::Atlas;
-pub use atlas::Extremes;
 
 /// Why there is no report.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ReportError {
-    #[error("none of the results is an optimum: there is no walk to show")]
-    Nothing,
-    #[error(transparent)]
-    Unusable(#[from] Unusable),
+    #[error("{0}")]
+    Nothing(String),
     #[error(transparent)]
     Undefined(#[from] Undefined),
 }
@@ -54,8 +54,8 @@ pub enum ReportError {
 /// Results with their walks, and how they compare.
 pub struct Report<'a> {
     subjects: Vec<(Subject<'a>, Vec<Figure>)>,
-    /// All results, those without an optimum too.
-    results: Vec<GaitResult>,
+    /// All results, those without an optimum and those that could not be confirmed too.
+    records: Vec<Record<'a>>,
     atlas: Option<(Atlas, Vec<Figure>)>,
 }
 
@@ -73,48 +73,50 @@ impl<'a> Report<'a> {
     /// one if there is none) are shown.
     ///
     /// # Errors
-    /// If no result is an optimum, or one is not of this build or not consistent.
+    /// If no result is a confirmed optimum, or the motion of one cannot be followed.
     pub fn new(
-        results: Vec<GaitResult>,
+        mut records: Vec<Record<'a>>,
         extremes: Extremes,
         detail: Option<f64>,
-        gaits: &[&'a dyn Gait],
     ) -> Result<Report<'a>, ReportError> {
-        let mut shown: Vec<&GaitResult> = results.iter().filter(|r| r.is_optimal()).collect();
-        match (results.as_slice(), shown.is_empty()) {
-            ([only], true) => {
-                let (name, message) = (only.name(), only.message.clone());
-                return Err(Unusable::NoOptimum { name, message }.into());
+        let mut kept: Vec<Record> = Vec::new();
+        for record in records.drain(..) {
+            // The same result given twice is one.
+            if !kept.iter().any(|k| k.result == record.result && k.is_confirmed() == record.is_confirmed()) {
+                kept.push(record);
             }
-            (_, true) => return Err(ReportError::Nothing),
-            _ => {}
+        }
+        let records = kept;
+        let mut shown: Vec<&Record> = records.iter().filter(|r| r.is_confirmed()).collect();
+        if shown.is_empty() {
+            return Err(ReportError::Nothing(nothing(&records)));
         }
         if shown.len() > DETAILS || detail.is_some() {
-            let mut speeds: Vec<f64> = shown.iter().map(|r| r.speed).collect();
+            let mut speeds: Vec<f64> = shown.iter().map(|r| r.result.speed).collect();
             speeds.sort_by(f64::total_cmp);
             let wanted = detail.unwrap_or(speeds[speeds.len() / 2]);
             speeds.sort_by(|a, b| (a - wanted).abs().total_cmp(&(b - wanted).abs()));
-            shown.retain(|r| r.speed == speeds[0]);
+            shown.retain(|r| r.result.speed == speeds[0]);
         }
-        let subjects = shown
-            .into_iter()
-            .map(|r| {
-                let subject = Subject::new(r.clone(), gaits)?;
+        let mut subjects: Vec<(Subject, Vec<Figure>)> = Vec::new();
+        for record in shown {
+            let id = unique(record, subjects.iter().map(|(s, _)| s.id.as_str()));
+            if let Some(subject) = Subject::new(record, id)? {
                 let figures = figures(&subject);
-                Ok((subject, figures))
-            })
-            .collect::<Result<Vec<_>, ReportError>>()?;
-        let atlas = Atlas::new(&results, extremes).map(|atlas| {
+                subjects.push((subject, figures));
+            }
+        }
+        let atlas = Atlas::new(&records, extremes).map(|atlas| {
             let figures = atlas.figures();
             (atlas, figures)
         });
-        Ok(Report { subjects, results, atlas })
+        Ok(Report { subjects, records, atlas })
     }
 
     /// `index.html`, and every figure as SVG and PDF.
     pub fn files(&self) -> Vec<File> {
         let mut files = vec![File { path: "index.html".into(), contents: page::page(self).into_bytes() }];
-        let of_walks = self.subjects.iter().flat_map(|(s, figures)| figures.iter().map(|f| (s.result.name() + "-", f)));
+        let of_walks = self.subjects.iter().flat_map(|(s, figures)| figures.iter().map(|f| (format!("{}-", s.id), f)));
         let of_atlas = self.atlas.iter().flat_map(|(_, figures)| figures.iter().map(|f| (String::new(), f)));
         for (of, figure) in of_atlas.chain(of_walks) {
             let path = format!("figures/{of}{}", figure.name);
@@ -126,6 +128,25 @@ impl<'a> Report<'a> {
         }
         files
     }
+}
+
+/// Why there is nothing to show.
+fn nothing(records: &[Record]) -> String {
+    let reasons: Vec<String> = records.iter().filter_map(Record::reason).collect();
+    match reasons.as_slice() {
+        [] => "no results were given".into(),
+        [only] => only.clone(),
+        all => format!("none of the results is a confirmed optimum: there is no walk to show\n  {}", all.join("\n  ")),
+    }
+}
+
+/// A name for a result that none of these has.
+fn unique<'i>(record: &Record, taken: impl Iterator<Item = &'i str> + Clone) -> String {
+    let legs = if record.result.limits_at_real_legs { "-real-legs" } else { "" };
+    let name = format!("{}{legs}", record.result.name());
+    let numbered = (2..).map(|k| format!("{name}-{k}"));
+    let free = |id: &String| !taken.clone().any(|other| other == id);
+    std::iter::once(name.clone()).chain(numbered).find(free).unwrap_or(name)
 }
 
 /// All figures of a walk, in the order in which they are read.

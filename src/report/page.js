@@ -9,7 +9,11 @@ const node = (name, attributes, parent) => {
   return element;
 };
 const clamp = (x, a, b) => Math.min(Math.max(x, a), b);
-const digits = x => x === 0 ? "0" : Number(x.toPrecision(5)).toString().replace("-", "−");
+const digits = x => {
+  const size = Math.abs(x);
+  const text = x === 0 || (size >= 1e-3 && size < 1e6) ? Number(x.toPrecision(5)).toString() : x.toExponential(4).replace("+", "");
+  return text.replaceAll("-", "−");
+};
 
 // ------------------------------------------------------------------------------------------------ figures
 
@@ -21,6 +25,8 @@ class Plot {
     this.svg = element.querySelector("svg");
     this.data = data;
     this.onTime = data.time ? onTime : null;
+    // Along the first axis values are told where there are some; elsewhere of the nearest point of all.
+    this.ordered = data.curves.every(c => c.x.every((x, k) => k === 0 || x >= c.x[k - 1]));
     element.dataset.live = "";
     const [a, b] = data.y.range;
     const line = name => node("line", { class: name, y1: b, y2: a, visibility: "hidden" }, this.svg);
@@ -40,14 +46,24 @@ class Plot {
     return from + (value - a) / (b - a) * (to - from);
   }
 
-  /** Where the pointer is, in the drawing and on the first axis; nothing outside of the axes. */
+  /** The point of any curve that is nearest on the first axis; `value` itself where there are no curves. */
+  nearest(value) {
+    let best = value, least = Infinity;
+    for (const { x } of this.data.curves) for (const at of x) {
+      if (Math.abs(at - value) < least) { least = Math.abs(at - value); best = at; }
+    }
+    return best;
+  }
+
+  /** Where the pointer is, in the drawing and on the first axis (at a point of the curves, if these run along it); nothing outside of the axes. */
   under(event) {
     const box = this.svg.getBoundingClientRect();
     const factor = this.svg.viewBox.baseVal.width / box.width;
     const x = (event.clientX - box.left) * factor, y = (event.clientY - box.top) * factor;
     const { domain: [a, b], range: [from, to] } = this.data.x;
     if (x < from - 8 || x > to + 8) return null;
-    return { x, y, value: clamp(a + (x - from) / (to - from) * (b - a), a, b) };
+    const value = clamp(a + (x - from) / (to - from) * (b - a), a, b);
+    return { x, y, value: this.ordered ? this.nearest(value) : value };
   }
 
   seek(event) {
@@ -58,35 +74,34 @@ class Plot {
   point(event) {
     const at = this.under(event);
     if (!at) return this.leave();
-    const { x: axis, y: { unit }, curves, time } = this.data;
-    const sorted = curves.every(c => c.x.every((x, k) => k === 0 || x >= c.x[k - 1]));
-    let best = null;
-    const nearest = curves.map(c => {
-      let found = -1, least = Infinity;
+    const { x: axis, y: { unit }, curves } = this.data;
+    const hits = curves.map(c => {
+      if (this.ordered) return { k: c.x.indexOf(at.value) };
+      let found = { k: -1, least: Infinity };
       c.x.forEach((x, k) => {
-        const dx = this.place("x", x) - at.x, dy = sorted ? 0 : this.place("y", c.y[k]) - at.y;
-        if (dx * dx + dy * dy < least) { least = dx * dx + dy * dy; found = k; }
+        const dx = this.place("x", x) - at.x, dy = this.place("y", c.y[k]) - at.y, least = dx * dx + dy * dy;
+        if (least < found.least) found = { k, least };
       });
-      const hit = { k: found, least };
-      if (!sorted && (!best || least < best.least)) best = hit;
-      return hit;
+      return found;
     });
+    const best = Math.min(...hits.map(hit => hit.least));
     const rows = [];
     this.dots.forEach((dot, i) => {
-      const { k, least } = nearest[i], c = curves[i];
-      const shown = k >= 0 && (sorted ? least < 200 : nearest[i] === best);
+      const { k, least } = hits[i], c = curves[i];
+      const shown = k >= 0 && (this.ordered || least === best);
       dot.setAttribute("visibility", shown ? "visible" : "hidden");
       if (!shown) return;
       dot.setAttribute("cx", this.place("x", c.x[k]));
       dot.setAttribute("cy", this.place("y", c.y[k]));
-      const pair = sorted ? "" : `${digits(c.x[k])} ${axis.unit}, `;
+      const pair = this.ordered ? "" : `${digits(c.x[k])} ${axis.unit}, `;
       rows.push([c.ink, `${c.name ? c.name + "  " : ""}${pair}${digits(c.y[k])} ${unit}`]);
     });
-    if (sorted) {
+    if (this.ordered) {
+      const x = this.place("x", at.value);
       this.hair.setAttribute("visibility", "visible");
-      this.hair.setAttribute("x1", at.x);
-      this.hair.setAttribute("x2", at.x);
-      rows.unshift([null, `${axis.name} ${at.value.toFixed(time ? 4 : 2)} ${axis.unit}`]);
+      this.hair.setAttribute("x1", x);
+      this.hair.setAttribute("x2", x);
+      rows.unshift([null, `${axis.name} ${digits(at.value)} ${axis.unit}`]);
     }
     tip.replaceChildren(...rows.map(([ink, text]) => {
       const row = document.createElement("div");
@@ -116,12 +131,12 @@ class Plot {
 // --------------------------------------------------------------------------------------------------- walk
 
 const VIEWS = { side: [0, 0], behind: [90, 0], space: [-38, 18] };
-const WIDTH = 800, GROUND = 318;
+const WIDTH = 800, HEIGHT = 400, GROUND = 318;
 
 /** The robot in parallel projection, seen from `yaw` about the vertical and `pitch` above the ground. */
 class Robot {
   constructor(svg, walk) {
-    Object.assign(this, { svg, walk, yaw: 0, pitch: 0, scale: 205 / walk.length });
+    Object.assign(this, { svg, walk, yaw: 0, pitch: 0, scale: .205 });
     this.floor = node("g", {}, svg);
     this.paths = node("g", {}, svg);
     this.body = node("g", {}, svg);
@@ -158,7 +173,7 @@ class Robot {
     if (!platform) this.body.append(this.plate);
   }
 
-  /** A point of the world (mm) in the drawing; `camera` is the x that stays in the middle. */
+  /** A point of the world (thousandths of a leg) in the drawing; `camera` is the x that stays in the middle. */
   at(x, y, z, camera) {
     const dot = v => v[0] * (x - camera) + v[1] * y + v[2] * z;
     return [WIDTH / 2 + this.scale * dot(this.right), GROUND - this.scale * dot(this.up)];
@@ -211,8 +226,8 @@ class Robot {
   }
 
   arrow([x, y, z], force, camera) {
-    const size = 0.9 * this.walk.length / this.walk.weight;
-    const tipAt = [x + size * force[0], y + size * force[1], z + size * force[2]];
+    // The robot's weight is an arrow of nine tenths of a leg.
+    const tipAt = [x + .9 * force[0], y + .9 * force[1], z + .9 * force[2]];
     const [a, b] = [this.at(x, y, z, camera), this.at(...tipAt, camera)];
     const d = [b[0] - a[0], b[1] - a[1]], l = Math.hypot(...d);
     if (l < 6) return "";
@@ -223,7 +238,7 @@ class Robot {
 
   /** Outline of the platform. */
   hull(hips, camera) {
-    const thick = 0.14 * this.walk.length;
+    const thick = 140;
     // The hips and the mass centre, which is a torso's middle where the robot is upright.
     const points = hips.flatMap(([x, y, z]) => [this.at(x, y, z, camera), this.at(x, y + thick, z, camera)]);
     points.sort((p, q) => p[0] - q[0] || p[1] - q[1]);
@@ -238,7 +253,7 @@ class Robot {
   }
 
   drawFloor(camera) {
-    const step = 100, half = 260, reach = Math.ceil(0.75 * WIDTH / this.scale / step);
+    const { metre, half } = this.walk, step = this.walk.tick * metre, reach = Math.ceil(0.75 * WIDTH / this.scale / step);
     const middle = Math.round(camera / step);
     this.lines.forEach((line, i) => {
       const x = (middle - reach + i) * step;
@@ -251,8 +266,8 @@ class Robot {
     this.labels.forEach((label, i) => {
       const x = (first + i) * every * step;
       const [px, py] = this.at(x, 0, half * (this.pitch === 0 ? 0 : 1), camera);
-      const shown = Math.abs(this.right[0]) > .3 && px > 20 && px < WIDTH - 20 && x <= to;
-      label.textContent = shown ? `${digits(x / 1000)} m` : "";
+      const shown = Math.abs(this.right[0]) > .3 && px > 20 && px < WIDTH - 20 && py < HEIGHT - 26 && x <= to;
+      label.textContent = shown ? `${digits(x / metre)} m` : "";
       label.setAttribute("x", px);
       label.setAttribute("y", py + 22);
     });
@@ -263,6 +278,8 @@ class Robot {
 class Player {
   constructor(section, walk) {
     this.walk = walk;
+    // Digits that tell a thousandth of the walk.
+    this.places = Math.max(3, 2 - Math.floor(Math.log10(walk.duration)));
     this.time = 0;
     this.cycle = 0;
     this.playing = false;
@@ -337,7 +354,7 @@ class Player {
     const { duration } = this.walk;
     this.robot.draw(this.time, this.cycle);
     this.slider.value = 1000 * this.time / duration;
-    this.clock.value = `${this.time.toFixed(3)} of ${duration.toFixed(3)} s`;
+    this.clock.value = `${this.time.toFixed(this.places)} of ${duration.toFixed(this.places)} s`;
     for (const plot of this.followers) plot.show(this.time);
   }
 }

@@ -1,12 +1,16 @@
 //! The page: everything in one file, to be opened, read and printed without a network.
 
+use super::atlas::{Atlas, variant};
 use super::figure::Figure;
 use super::font::Weight;
+use super::marks::marks;
+use super::number::{digits, given, scientific, significant};
 use super::subject::{Subject, spaced};
 use super::words::meaning;
-use super::{Report, certificate, ink, levers, player, price, real_legs, recovery, svg};
+use super::{Record, Report, Standing};
+use super::{certificate, compare, ink, levers, marks, player, price, real_legs, recovery, svg};
 use crate::motion::Criterion;
-use crate::result::{GaitResult, Status};
+use crate::result::GaitResult;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -65,69 +69,135 @@ fn style() -> String {
 }
 
 fn title(report: &Report) -> String {
-    let robot = report.results.first().map_or("", |r| r.robot.as_str());
+    let mut robots: Vec<&str> = Vec::new();
+    for record in report.records.iter().filter(|r| r.is_confirmed()) {
+        if !robots.contains(&record.result.robot.as_str()) {
+            robots.push(&record.result.robot);
+        }
+    }
+    let robots = robots.join(" and ");
+    let speeds: Vec<f64> = report.subjects.iter().map(|(s, _)| s.result.speed).collect();
     match (&report.atlas, report.subjects.as_slice()) {
-        (Some(_), _) => format!("Gaits of {robot} over speed"),
-        (None, [(one, _)]) => format!("{} of {robot}, {}", capital(&one.result.gait), task(&one.result)),
-        (None, [(one, _), ..]) => format!("Optimal gaits of {robot} at {} m/s", one.result.speed),
-        (None, []) => format!("Gaits of {robot}"),
+        (Some(_), _) => format!("Gaits of {robots} over speed"),
+        (None, [(one, _)]) => format!("{} of {robots}, {}", capital(&variant(&one.result)), task(&one.result)),
+        (None, _) if speeds.windows(2).all(|pair| pair[0] == pair[1]) => {
+            format!("Optimal gaits of {robots} at {} m/s", speeds.first().map_or(String::new(), |v| given(*v)))
+        }
+        (None, _) => format!("Optimal gaits of {robots}"),
     }
 }
 
-fn capital(name: &str) -> String {
+/// A name of the specification at the beginning of a line.
+pub fn capital(name: &str) -> String {
     let name = spaced(name);
     let mut letters = name.chars();
     letters.next().map_or(String::new(), |c| c.to_uppercase().chain(letters).collect())
 }
 
 fn task(r: &GaitResult) -> String {
-    format!("least {} at {} m/s", r.criterion.name(), r.speed)
+    format!("least {} at {} m/s", r.criterion.name(), given(r.speed))
+}
+
+/// Half steps, s.
+pub fn durations(r: &GaitResult) -> String {
+    r.durations.iter().map(|t| significant(*t, 3)).collect::<Vec<_>>().join(" / ")
 }
 
 fn lead(report: &Report) -> String {
-    let optimal = report.results.iter().filter(|r| r.is_optimal()).count();
-    let receipts = match (optimal, report.results.len()) {
-        (1, 1) => "A local optimum whose receipt holds.".to_string(),
-        (a, b) if a == b => format!("{a} local optima; the receipt of each holds."),
-        (a, b) => format!("{b} searches, {a} local optima; the receipt of each of these holds."),
+    let count = |is: fn(&Standing) -> bool| report.records.iter().filter(|r| is(&r.standing)).count();
+    let confirmed = count(|s| matches!(s, Standing::Confirmed(_)));
+    let not = count(|s| matches!(s, Standing::NotConfirmed(_)));
+    let without = count(|s| matches!(s, Standing::NoOptimum));
+    let mut text = match confirmed {
+        1 => "A local optimum, derived anew from its motion: its receipt holds.".to_string(),
+        n => format!("{n} local optima, each derived anew from its motion: the receipt of each holds."),
     };
-    format!("{receipts} Point at a curve to read its values; click to move the walk there.")
+    text += &match not {
+        0 => String::new(),
+        1 => " One result could not be confirmed, and is not shown as an optimum.".into(),
+        n => format!(" {n} results could not be confirmed, and are not shown as optima."),
+    };
+    text += &match without {
+        0 => String::new(),
+        1 => " One search found no optimum.".into(),
+        n => format!(" {n} searches found no optimum."),
+    };
+    text + " Point at a curve to read its values; click to move the walk there."
 }
 
 fn navigation(report: &Report) -> Markup {
+    let speeds: Vec<f64> = report.subjects.iter().map(|(s, _)| s.result.speed).collect();
+    let several = speeds.windows(2).any(|pair| pair[0] != pair[1]);
     html! {
         nav {
-            @if report.results.len() > 1 { a href="#overview" { "Overview" } }
+            @if report.records.len() > 1 { a href="#overview" { "Overview" } }
             @for (s, _) in &report.subjects {
-                a href=(format!("#{}", s.result.name())) { (capital(&s.result.gait)) " · " (s.result.criterion.name()) }
+                a href=(format!("#{}", s.id)) {
+                    (capital(&variant(&s.result))) " · " (s.result.criterion.name())
+                    @if several { " · " (given(s.result.speed)) " m/s" }
+                }
             }
         }
     }
 }
 
 fn overview(report: &Report) -> Markup {
-    if report.results.len() < 2 {
+    if report.records.len() < 2 {
         return html! {};
     }
+    let subjects: Vec<&Subject> = report.subjects.iter().map(|(s, _)| s).collect();
     html! {
         section #overview {
             h2 { "Overview" }
+            (refused(report))
             @if let Some((atlas, figures)) = &report.atlas {
                 (gallery("overview", figures))
                 (script("overview", json!({ "figures": interactive(figures) })))
-                ul {
-                    @for criterion in Criterion::ALL {
-                        @for x in atlas.crossings(criterion) {
-                            li { "Least " (x.criterion.name()) ": the " (spaced(&x.faster)) " overtakes the " (spaced(&x.slower)) " at " (format!("{:.2}", x.speed)) " m/s." }
-                        }
-                    }
-                    @for m in atlas.maximum_speeds() {
-                        li { "The " (spaced(&m.gait)) " goes up to " (format!("{:.3}", m.speed)) " m/s"
-                            @if let Some(why) = m.ended_by.first() { "; beyond that it fails on " (why) } "." }
-                    }
+                (findings(atlas))
+            }
+            (compare::section(&subjects))
+            (table(report))
+            (compare::legend())
+        }
+    }
+}
+
+/// What could not be confirmed, each with the reason.
+fn refused(report: &Report) -> Markup {
+    let reason = |r: &'_ Record| match &r.standing {
+        Standing::NotConfirmed(reason) => Some(reason.clone()),
+        _ => None,
+    };
+    let refused: Vec<String> = report.records.iter().filter_map(reason).collect();
+    html! {
+        @if !refused.is_empty() {
+            div.refused {
+                h3 { "Not confirmed" }
+                ul { @for reason in refused { li { (reason) "." } } }
+            }
+        }
+    }
+}
+
+/// What the curves over speed say, in words.
+fn findings(atlas: &Atlas) -> Markup {
+    html! {
+        ul {
+            @for criterion in Criterion::ALL {
+                @for x in atlas.crossings(criterion) {
+                    li { "Least " (x.criterion.name()) ": the " (spaced(&x.faster)) " overtakes the " (spaced(&x.slower)) " " (x.place()) "."
+                        @if x.at.is_none() { " In between, one of them jumps to another branch, or was not followed." } }
                 }
             }
-            (table(report))
+            @for f in atlas.fastest() {
+                li { "The fastest optimum of the " (spaced(f.gait)) " is at " (significant(f.speed, 4)) " m/s."
+                    @if f.is_greatest { " By its own account, which no motion confirms, the sweep found no faster motion." }
+                    @if !f.active.is_empty() { " Without room to spare there: " (f.active.join(", ")) "." } }
+            }
+            @for m in atlas.unfounded() {
+                li { b { "Not confirmed: " } "the sweep’s account says that the " (spaced(&m.gait)) " goes up to " (significant(m.speed, 4))
+                    " m/s, but the fastest confirmed optimum here is another." }
+            }
         }
     }
 }
@@ -137,55 +207,48 @@ fn table(report: &Report) -> Markup {
     html! {
         details open[report.atlas.is_none()] { summary { "All results" } div.scroll { table {
             thead { tr {
-                th { "gait" } th { "least" } th.n { "speed, m/s" } th.n { "cost" } th.n { "half steps, s" } th.n { "step length, m" }
-                th.n { "violation" } th.n { "cycle error" } th.n { "KKT residual" } th { "receipt" }
+                th { "gait" } th { "least" } th.n { "speed, m/s" } th.n { "cost" } th.n { "cost of transport" } th { "receipt" } th { "between the instants" }
+                th { "real legs" } th.n { "half steps, s" } th.n { "travel, m" } th.n { "violation" } th.n { "cycle error" } th.n { "KKT residual" }
             } }
-            tbody { @for r in &report.results { (row(report, r)) } }
+            tbody { @for r in &report.records { (row(report, r)) } }
         } } }
     }
 }
 
-fn row(report: &Report, r: &GaitResult) -> Markup {
-    let shown = report.subjects.iter().any(|(s, _)| s.result.name() == r.name());
-    let name = capital(&r.gait);
-    let durations: Vec<String> = r.durations.iter().map(|t| format!("{t:.3}")).collect();
+fn row(report: &Report, record: &Record) -> Markup {
+    let r = &record.result;
+    let shown = report.subjects.iter().find(|(s, _)| s.result == *r);
+    let name = capital(&variant(r));
     html! {
         tr {
-            td { @if shown { a href=(format!("#{}", r.name())) { (name) } } @else { (name) } }
+            td { @if let Some((s, _)) = shown { a href=(format!("#{}", s.id)) { (name) } } @else { (name) } }
             td { (r.criterion.name()) }
-            td.n { (format!("{}", (r.speed * 1e4).round() / 1e4)) }
-            @if let (Some(cost), Some(receipt)) = (r.cost, &r.receipt) {
-                td.n { b { (format!("{cost:.4}")) } " " (r.criterion.unit()) }
-                td.n { (durations.join(" / ")) }
-                td.n { (r.step_length.map_or(String::new(), |l| format!("{l:.4}"))) }
-                td.n { (scientific(receipt.max_violation)) }
-                td.n { (scientific(receipt.cycle_error)) }
-                td.n { (receipt.kkt_residual.map_or(html! { "–" }, scientific)) }
-                td { span.holds { "holds" } }
-            } @else {
-                td colspan="6" { (r.message) }
-                td { (if r.status == Status::Infeasible { "infeasible" } else { "none" }) }
+            td.n { (given(r.speed)) }
+            @match (&record.standing, r.cost, &r.receipt) {
+                (Standing::Confirmed(_), Some(cost), Some(receipt)) => {
+                    td.n { b { (digits(cost, 6)) } " " (r.criterion.unit()) }
+                    td.n { @if let Some(transport) = record.cost_of_transport() { (digits(transport, 3)) } }
+                    @for mark in marks(r) { td { (mark.brief()) } }
+                    td.n { (durations(r)) }
+                    td.n { @if let Some(length) = r.step_length { (digits(length, 4)) } }
+                    td.n { (scientific(receipt.max_violation)) }
+                    td.n { (scientific(receipt.cycle_error)) }
+                    td.n { (receipt.kkt_residual.map_or(html! { "–" }, scientific)) }
+                }
+                (Standing::NotConfirmed(reason), ..) => { td colspan="10" { span.fails { "not confirmed" } " " (reason) } }
+                _ => { td colspan="10" { span.open { "no optimum" } " " (r.message) } }
             }
         }
     }
 }
 
-/// Powers of ten as a reader writes them.
-pub(super) fn scientific(value: f64) -> Markup {
-    if value == 0.0 {
-        return html! { "0" };
-    }
-    let text = format!("{value:.1e}");
-    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-    html! { (mantissa.replace('-', "−")) "·10" sup { (exponent.replace('-', "−")) } }
-}
-
 fn section(s: &Subject, figures: &[Figure]) -> Markup {
     let r = &s.result;
-    let name = r.name();
+    let name = &s.id;
     html! {
         section.walk id=(name) {
-            h2 { (capital(&r.gait)) " " small { (task(r)) } }
+            h2 { (capital(&variant(r))) " " small { (task(r)) } }
+            (marks::head(r))
             div.top {
                 div.stage {
                     svg viewBox="0 0 800 400" role="img" aria-label=(format!("Animation of the {}", spaced(&r.gait))) tabindex="0" {}
@@ -202,17 +265,17 @@ fn section(s: &Subject, figures: &[Figure]) -> Markup {
                             button type="button" data-view=(view) { (view) }
                         } }
                     }
-                    @for f in &figures[..1] { (drawing(&name, f)) }
+                    @for f in &figures[..1] { (drawing(name, f)) }
                     p.note { "All real legs, to scale. Arrows are the reactions on each foot, dots the paths of the swinging feet. Drag to turn." }
                 }
                 (facts(s))
             }
-            (gallery(&name, &figures[1..]))
+            (gallery(name, &figures[1..]))
             (receipt(r))
             (price::section(r))
             (levers::section(r))
             (recovery::section(r))
-            (script(&name, json!({ "walk": player::data(s), "figures": interactive(figures) })))
+            (script(name, json!({ "walk": player::data(s), "figures": interactive(figures) })))
         }
     }
 }
@@ -221,22 +284,23 @@ fn facts(s: &Subject) -> Markup {
     let r = &s.result;
     let costs = r.costs;
     let other = Criterion::ALL.into_iter().find(|c| *c != r.criterion).unwrap_or(r.criterion);
-    let durations: Vec<String> = r.durations.iter().map(|t| format!("{t:.4}")).collect();
+    let durations: Vec<String> = r.durations.iter().map(|t| significant(*t, 4)).collect();
     html! {
         div.facts {
-            p.cost { (format!("{:.4}", s.cost)) " " span { (r.criterion.unit()) } }
+            p.cost { (digits(s.cost, 6)) " " span { (r.criterion.unit()) } }
             p.note { "least " (r.criterion.name()) " per metre of travel (eq. " (if r.criterion == Criterion::Energy { "14" } else { "13" }) ")" }
             dl {
-                @if let Some(costs) = costs { dt { (other.name()) } dd { (format!("{:.4} {}", costs.of(other), other.unit())) } }
+                dt { "cost of transport" } dd { (digits(s.transport, 4)) span.note { " E/(m g d)" @if r.criterion != Criterion::Energy { ", of this motion’s energy" } } }
+                @if let Some(costs) = costs { dt { (other.name()) } dd { (digits(costs.of(other), 6)) " " (other.unit()) } }
                 dt { "half steps" } dd { (durations.join(" + ")) " s" }
-                dt { "travel in them" } dd { (format!("{:.4}", r.step_length.unwrap_or(0.0))) " m" }
+                dt { "travel in them" } dd { (digits(r.step_length.unwrap_or(0.0), 4)) " m" }
                 @for leg in 0..2 { dt { "virtual leg " (leg + 1) } dd { (s.leg_name(leg)) } }
-                dt { "local optima" } dd { (r.local_optima.len()) " from " (r.search.effort.starts) " starts" }
+                dt { "local optima" } dd { (r.local_optima.len()) " from " (r.search.effort.starts) " starts" span.note { ", as the search says" } }
             }
             p.note { "Joints, peak against limit" }
             table.peaks { tbody { @for p in &r.peaks {
-                tr { td { (p.name) } td { (bar(p.torque / p.max_torque)) } td.n { (format!("{:.1}", p.torque)) " N·m" }
-                    td { (bar(p.speed / p.unloaded_speed)) } td.n { (format!("{:.2}", p.speed)) " rad/s" } }
+                tr { td { (p.name) } td { (bar(p.torque / p.max_torque)) } td.n { (digits(p.torque, 3)) " N·m" }
+                    td { (bar(p.speed / p.unloaded_speed)) } td.n { (digits(p.speed, 3)) " rad/s" } }
             } } }
         }
     }
@@ -275,10 +339,11 @@ fn receipt(r: &GaitResult) -> Markup {
             }
             @if let Some(c) = &r.certificate { (certificate::section(c)) }
             @if let Some(legs) = &r.real_legs { (real_legs::section(legs, r.criterion)) }
+            @for open in &r.not_examined { p.note { "Not examined: " (spaced(&open.entry)) " (" (open.reason) ")." } }
             h3 { "Limits without room to spare" }
             @if receipt.findings.is_empty() { p { "None: all limits have room." } }
             ul { @for f in &receipt.findings {
-                li { b { (f.constraint) } ", half step " (f.half_step) " at " (format!("{:.3}", f.time)) " s. " (meaning(&f.constraint)) }
+                li { b { (f.constraint) } ", half step " (f.half_step) " at " (digits(f.time, 3)) " s. " (meaning(&f.constraint)) }
             } }
         }
     }

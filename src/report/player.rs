@@ -1,5 +1,8 @@
-//! What the page's animation needs: where everything is, moment by moment. Positions are in mm, forces in N.
+//! What the page's animation needs: where everything is, moment by moment. Lengths are in thousandths of a leg's length and forces
+//! in thousandths of the robot's weight, so that robots of any size are seen equally well.
 
+use super::plot::rounded;
+use super::scale::round_step;
 use super::subject::Subject;
 use crate::four_legs::Legs;
 use crate::walk::{Moment, Point};
@@ -10,14 +13,18 @@ const EVERY: usize = 2;
 
 pub fn data(s: &Subject) -> Value {
     let d = s.description();
+    let metre = 1000.0 / d.leg_length();
+    let lengths = |points: &[Point]| thousandths(points, metre);
     let names: Vec<Value> = (0..2)
         .flat_map(|leg| {
             d.legs[leg]
                 .members
                 .iter()
-                .map(move |m| json!({ "name": m.name, "leg": leg, "mount": millimetres(&[m.mount()]) }))
+                .map(move |m| json!({ "name": m.name, "leg": leg, "mount": lengths(&[m.mount()]) }))
         })
         .collect();
+    let mounts = d.legs.iter().flat_map(|leg| leg.members.iter()).map(|m| metre * m.mount()[2].abs());
+    let widest = mounts.fold(0.0, f64::max);
     let per_half = s.walk.moments.iter().filter(|m| m.half_step == 0).count();
     let shown = s.walk.moments.iter().enumerate().filter(|(k, _)| (k % per_half).is_multiple_of(EVERY));
     let real = Legs::new(s.gait);
@@ -25,18 +32,19 @@ pub fn data(s: &Subject) -> Value {
         .map(|(_, m)| {
             let chains: Vec<Value> = (0..2)
                 .flat_map(|leg| (0..d.legs[leg].members.len()).map(move |member| (leg, member)))
-                .map(|(leg, member)| millimetres(&m.chain(d, leg, member)))
+                .map(|(leg, member)| lengths(&m.chain(d, leg, member)))
                 .collect();
-            let forces: Vec<f64> =
-                reactions(s, real.as_ref(), m).iter().flatten().map(|f| (10.0 * f).round() / 10.0).collect();
-            json!([(m.time * 1e6).round() / 1e6, m.stance, millimetres(&[m.platform[0]]), forces, chains])
+            let forces = thousandths(&reactions(s, real.as_ref(), m), 1000.0 / d.weight());
+            json!([rounded(m.time), m.stance, lengths(&[m.platform[0]]), forces, chains])
         })
         .collect();
     json!({
         "duration": s.walk.duration(),
-        "travel": 1000.0 * s.walk.travel,
-        "weight": d.total_mass() * d.gravity,
-        "length": 1000.0 * d.leg_length(),
+        "travel": metre * s.walk.travel,
+        "metre": metre,
+        // Between lines on the floor, m, and from its middle to its edge.
+        "tick": round_step(0.3 * d.leg_length()),
+        "half": widest.max(0.53 * 1000.0) * 1.5,
         "legs": names,
         "frames": frames,
     })
@@ -56,7 +64,7 @@ fn reactions(s: &Subject, real: Option<&Legs>, m: &Moment) -> Vec<Point> {
         .collect()
 }
 
-/// Coordinates one after another, to hundredths of a millimetre.
-fn millimetres(points: &[Point]) -> Value {
-    points.iter().flatten().map(|x| (x * 1e5).round() / 100.0).collect()
+/// Coordinates one after another, times `unit`, to hundredths.
+fn thousandths(points: &[Point], unit: f64) -> Value {
+    points.iter().flatten().map(|x| (100.0 * unit * x).round() / 100.0).collect()
 }

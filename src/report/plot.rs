@@ -7,12 +7,19 @@ use super::scene::{Anchor, Dash, Pen, Scene, Xy};
 use serde_json::{Value, json};
 
 const WIDTH: f64 = 384.0;
+/// Left of the axes at least, for labels.
 const LEFT: f64 = 48.0;
 const RIGHT: f64 = 14.0;
 const PLOT_HEIGHT: f64 = 188.0;
 const BOTTOM: f64 = 36.0;
 const LEGEND_ROW: f64 = 17.0;
+/// A sample of a curve before its name.
+const KEY: f64 = 22.0;
 const SMALL: f64 = 11.0;
+/// Of a limit's name.
+const SMALL_NAME: f64 = 10.0;
+/// Labels of the second axis, about.
+const ROWS: usize = 5;
 
 /// What an axis shows.
 #[derive(Clone, Debug)]
@@ -32,6 +39,8 @@ pub struct Curve {
     pub segments: Vec<Vec<Xy>>,
     /// Whether each point is marked.
     pub dots: bool,
+    /// Ends of segments between which the quantity jumps: ringed.
+    pub jumps: Vec<Xy>,
     pub width: f64,
 }
 
@@ -40,6 +49,21 @@ pub struct Curve {
 pub struct Limit {
     pub name: String,
     pub points: Vec<Xy>,
+}
+
+/// Something that happens on the first axis, with what happens in a line of its own.
+#[derive(Clone, Debug)]
+pub struct Event {
+    pub name: String,
+    pub place: Place,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Place {
+    /// At a point: circled.
+    At(Xy),
+    /// Somewhere in an interval: tinted.
+    Within([f64; 2]),
 }
 
 /// An interval of the first axis, tinted, with a name at its top.
@@ -58,6 +82,7 @@ pub struct Plot {
     pub curves: Vec<Curve>,
     pub limits: Vec<Limit>,
     pub spans: Vec<Span>,
+    pub events: Vec<Event>,
     /// Where the motion may not be: filled.
     pub forbidden: Vec<Vec<Xy>>,
     /// A remark under the legend.
@@ -78,7 +103,7 @@ impl Axis {
 
 impl Curve {
     pub fn new(name: impl Into<String>, ink: Ink, segments: Vec<Vec<Xy>>) -> Curve {
-        Curve { name: name.into(), ink, dash: Dash::Solid, segments, dots: false, width: 1.8 }
+        Curve { name: name.into(), ink, dash: Dash::Solid, segments, dots: false, jumps: Vec::new(), width: 1.8 }
     }
 
     pub fn dash(self, dash: Dash) -> Curve {
@@ -99,6 +124,7 @@ impl Plot {
             curves: Vec::new(),
             limits: Vec::new(),
             spans: Vec::new(),
+            events: Vec::new(),
             forbidden: Vec::new(),
             note: None,
             over_time: false,
@@ -110,7 +136,7 @@ impl Plot {
         let mut rows: Vec<Vec<(f64, &Curve)>> = vec![Vec::new()];
         let mut x = LEFT;
         for curve in self.curves.iter().filter(|c| !c.name.is_empty()) {
-            let width = 22.0 + Weight::Regular.width(&curve.name, SMALL) + 14.0;
+            let width = KEY + width(&curve.name) + 14.0;
             if x + width > WIDTH && x > LEFT {
                 rows.push(Vec::new());
                 x = LEFT;
@@ -123,23 +149,29 @@ impl Plot {
         if rows.iter().all(Vec::is_empty) || self.curves.len() < 2 { Vec::new() } else { rows }
     }
 
+    /// The axes. The drawing gets wider where labels are, not the axes shorter.
     fn scales(&self) -> [Scale; 2] {
-        let top = 26.0 + LEGEND_ROW * (self.legend().len() + usize::from(self.note.is_some())) as f64 + 12.0;
+        let rows = self.legend().len() + self.events.len() + usize::from(self.note.is_some());
+        let top = 26.0 + LEGEND_ROW * rows as f64 + 12.0;
         let all = || self.curves.iter().flat_map(Curve::points).chain(self.forbidden.iter().flatten());
         let x = self.x.domain.unwrap_or_else(|| {
             let ends = all().map(|p| p[0]);
             ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)])
         });
         let y = self.y.domain.unwrap_or_else(|| domain(all().map(|p| p[1])));
-        [Scale { domain: x, range: [LEFT, WIDTH - RIGHT] }, Scale { domain: y, range: [top + PLOT_HEIGHT, top] }]
+        let y = Scale { domain: y, range: [top + PLOT_HEIGHT, top] };
+        let labels = y.ticks(ROWS).list.into_iter().map(|(_, label)| width(&label));
+        let more = (labels.fold(0.0, f64::max) + 12.0 - LEFT).max(0.0);
+        [Scale { domain: x, range: [LEFT + more, WIDTH - RIGHT + more] }, y]
     }
 
     pub fn scene(&self) -> Scene {
         let [x, y] = self.scales();
         let [bottom, top] = y.range;
         let [left, right] = x.range;
-        let mut scene = Scene::new(WIDTH, bottom + BOTTOM);
-        self.head(&mut scene);
+        let (across, up) = (x.roomy_ticks(5, width), y.ticks(ROWS));
+        let mut scene = Scene::new(right + RIGHT, bottom + BOTTOM);
+        self.head(&mut scene, up.power);
 
         for span in &self.spans {
             let [a, b] = span.interval.map(|v| x.at(v).clamp(left, right));
@@ -148,24 +180,41 @@ impl Plot {
                 scene.text([0.5 * (a + b), top - 4.0], &span.name, 10.0, Anchor::Middle, span.ink);
             }
         }
-        for tick in y.ticks(5) {
-            let at = y.at(tick);
-            let ink = if tick == 0.0 { Ink::Axis } else { Ink::Grid };
+        for (tick, label) in &up.list {
+            let at = y.at(*tick);
+            let ink = if *tick == 0.0 { Ink::Axis } else { Ink::Grid };
             scene.line(&[[left, at], [right, at]], Pen::new(ink, 1.0));
-            scene.text([left - 6.0, at + 4.0], &y.label(tick, 5), SMALL, Anchor::End, Ink::Muted);
+            scene.text([left - 6.0, at + 4.0], label, SMALL, Anchor::End, Ink::Muted);
         }
-        for tick in x.ticks(5) {
-            let at = x.at(tick);
+        for (tick, label) in &across.list {
+            let at = x.at(*tick);
             scene.line(&[[at, bottom], [at, bottom + 4.0]], Pen::new(Ink::Axis, 1.0));
-            scene.text([at, bottom + 16.0], &x.label(tick, 5), SMALL, Anchor::Middle, Ink::Muted);
+            scene.text([at, bottom + 16.0], label, SMALL, Anchor::Middle, Ink::Muted);
         }
         scene.line(&[[left, bottom], [right, bottom]], Pen::new(Ink::Axis, 1.0));
-        scene.text([right, bottom + 30.0], &words(&self.x), SMALL, Anchor::End, Ink::Muted);
+        scene.quantity(
+            [right, bottom + 30.0],
+            [self.x.name, self.x.unit],
+            across.power,
+            SMALL,
+            Anchor::End,
+            Ink::Muted,
+        );
 
         let place = |p: &Xy| [x.at(p[0]), y.at(p[1])];
         for region in &self.forbidden {
             let clipped: Vec<Xy> = region.iter().map(|p| [x.at(p[0]), y.at(p[1]).clamp(top, bottom)]).collect();
             scene.area(&clipped, Ink::Limit, 0.14);
+        }
+        for event in &self.events {
+            match event.place {
+                Place::At(p) => scene.ring(place(&p), 5.2, Ink::Text),
+                Place::Within(ends) => {
+                    let [a, b] = ends.map(|v| x.at(v).clamp(left, right));
+                    let [a, b] = if b - a < 3.0 { [0.5 * (a + b) - 1.5, 0.5 * (a + b) + 1.5] } else { [a, b] };
+                    scene.rectangle([a, top], [b - a, bottom - top], Ink::Text, 0.12);
+                }
+            }
         }
         let mut named = Vec::new();
         for limit in &self.limits {
@@ -179,15 +228,19 @@ impl Plot {
                     scene.dot(*at, 2.4, curve.ink);
                 }
             }
+            for jump in &curve.jumps {
+                scene.ring(place(jump), 3.4, curve.ink);
+            }
         }
         scene
     }
 
-    fn head(&self, scene: &mut Scene) {
-        scene.write([LEFT, 15.0], &self.title, 13.0, Weight::Bold, Anchor::Start, Ink::Text);
-        let after = LEFT + Weight::Bold.width(&self.title, 13.0) + 7.0;
-        let unit = if self.y.name.is_empty() { self.y.unit.to_string() } else { words(&self.y) };
-        scene.text([after, 15.0], &unit, SMALL, Anchor::Start, Ink::Muted);
+    fn head(&self, scene: &mut Scene, power: i32) {
+        let unit = width(self.y.name) + width(self.y.unit) + if power == 0 { 8.0 } else { 32.0 };
+        let title = Weight::Bold.fit(&self.title, 13.0, WIDTH - LEFT - unit);
+        scene.write([LEFT, 15.0], &title, 13.0, Weight::Bold, Anchor::Start, Ink::Text);
+        let after = LEFT + Weight::Bold.width(&title, 13.0) + 7.0;
+        scene.quantity([after, 15.0], [self.y.name, self.y.unit], power, SMALL, Anchor::Start, Ink::Muted);
         let mut at = 34.0;
         for row in self.legend() {
             for (x, curve) in row {
@@ -196,12 +249,22 @@ impl Plot {
                 if curve.dots {
                     scene.dot([x + 8.5, at - 4.0], 2.6, curve.ink);
                 }
-                scene.text([x + 22.0, at], &curve.name, SMALL, Anchor::Start, Ink::Text);
+                let name = Weight::Regular.fit(&curve.name, SMALL, WIDTH - x - KEY);
+                scene.text([x + KEY, at], &name, SMALL, Anchor::Start, Ink::Text);
             }
             at += LEGEND_ROW;
         }
+        let fit = |text: &str, x: f64| Weight::Regular.fit(text, SMALL, WIDTH - x);
+        for event in &self.events {
+            match event.place {
+                Place::At(_) => scene.ring([LEFT + 8.5, at - 4.0], 5.2, Ink::Text),
+                Place::Within(_) => scene.rectangle([LEFT + 4.0, at - 9.5], [9.0, 11.0], Ink::Text, 0.2),
+            }
+            scene.text([LEFT + KEY, at], &fit(&event.name, LEFT + KEY), SMALL, Anchor::Start, Ink::Text);
+            at += LEGEND_ROW;
+        }
         if let Some(note) = &self.note {
-            scene.text([LEFT, at], note, SMALL, Anchor::Start, Ink::Muted);
+            scene.text([LEFT, at], &fit(note, LEFT), SMALL, Anchor::Start, Ink::Muted);
         }
     }
 
@@ -212,7 +275,7 @@ impl Plot {
             .curves
             .iter()
             .map(|c| {
-                let [xs, ys] = [0, 1].map(|k| c.points().map(|p| significant(p[k])).collect::<Vec<_>>());
+                let [xs, ys] = [0, 1].map(|k| c.points().map(|p| rounded(p[k])).collect::<Vec<_>>());
                 json!({ "name": c.name, "ink": c.ink.name(), "x": xs, "y": ys })
             })
             .collect();
@@ -225,8 +288,8 @@ impl Plot {
     }
 }
 
-/// The part of a limit within the axes; its name at its right end, or at its left one where another name stands there.
-fn draw_limit(scene: &mut Scene, limit: &Limit, [x, y]: [Scale; 2], named: &mut Vec<f64>) {
+/// The part of a limit within the axes; its name at an end, over or under it, where no other name stands.
+fn draw_limit(scene: &mut Scene, limit: &Limit, [x, y]: [Scale; 2], named: &mut Vec<[Xy; 2]>) {
     let [bottom, top] = y.range;
     let points: Vec<Xy> = limit.points.iter().map(|p| [x.at(p[0]), y.at(p[1])]).collect();
     if points.iter().all(|p| p[1] < top - 0.5 || p[1] > bottom + 0.5) {
@@ -235,29 +298,26 @@ fn draw_limit(scene: &mut Scene, limit: &Limit, [x, y]: [Scale; 2], named: &mut 
     let clamped: Vec<Xy> = points.iter().map(|p| [p[0], p[1].clamp(top, bottom)]).collect();
     scene.line(&clamped, Pen::new(Ink::Limit, 1.2).dash(Dash::Dashed));
     let (Some(start), Some(end)) = (clamped.first(), clamped.last()) else { return };
-    if start[0] == end[0] {
-        // Beside an upright line, on its wider side.
-        let right = end[0] - x.range[0] < x.range[1] - end[0];
-        let (shift, anchor) = if right { (4.0, Anchor::Start) } else { (-4.0, Anchor::End) };
-        scene.text([end[0] + shift, top + 9.0], &limit.name, 10.0, anchor, Ink::Limit);
-        return;
+    let [left, right] = x.range;
+    let name = Weight::Regular.fit(&limit.name, SMALL_NAME, right - left - 6.0);
+    let wide = Weight::Regular.width(&name, SMALL_NAME);
+    let places = [(end, right - 3.0 - wide), (start, left + 3.0)].into_iter().flat_map(|(at, from)| {
+        let boxed = move |baseline: f64| [[from, baseline - 9.0], [from + wide, baseline + 2.5]];
+        [at[1] - 4.0, at[1] + 11.0].map(boxed)
+    });
+    let within = |[a, b]: &[Xy; 2]| a[1] >= top && b[1] <= bottom;
+    let apart = |[a, b]: &[Xy; 2], [c, d]: &[Xy; 2]| b[0] < c[0] || d[0] < a[0] || b[1] < c[1] || d[1] < a[1];
+    if let Some(free) = places.into_iter().find(|p| within(p) && named.iter().all(|other| apart(p, other))) {
+        scene.text([free[0][0], free[1][1] - 2.5], &name, SMALL_NAME, Anchor::Start, Ink::Limit);
+        named.push(free);
     }
-    let height = if end[1] < top + 14.0 { end[1] + 12.0 } else { end[1] - 4.0 };
-    let taken = named.iter().any(|other| (other - height).abs() < 12.0);
-    let (at, anchor) = if taken { (x.range[0] + 3.0, Anchor::Start) } else { (x.range[1] - 3.0, Anchor::End) };
-    scene.text([at, height], &limit.name, 10.0, anchor, Ink::Limit);
-    named.push(height);
 }
 
-fn words(axis: &Axis) -> String {
-    match (axis.name, axis.unit) {
-        (name, "") => name.into(),
-        ("", unit) => unit.into(),
-        (name, unit) => format!("{name}, {unit}"),
-    }
+fn width(label: &str) -> f64 {
+    Weight::Regular.width(label, SMALL)
 }
 
 /// Six significant digits: more than a figure can show, and short.
-pub fn significant(value: f64) -> f64 {
+pub fn rounded(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
 }

@@ -2,6 +2,7 @@
 
 use super::figure::Figure;
 use super::ink::Ink;
+use super::number::significant;
 use super::plot::Curve;
 use super::scene::Xy;
 use super::subject::Subject;
@@ -47,7 +48,8 @@ pub fn integral(s: &Subject) -> Figure {
     let mut plot = s.time_plot(title, unit);
     plot.curves.push(Curve::new(title, Ink::Text, curve));
     let unit = criterion.unit();
-    plot.note = Some(format!("{:.4} over {travel:.4} m is {:.4} {unit}", s.cost * travel, s.cost));
+    let [sum, travel, cost] = [s.cost * travel, travel, s.cost].map(|v| significant(v, 6));
+    plot.note = Some(format!("{sum} over {travel} m is {cost} {unit}"));
     let caption = match criterion {
         Criterion::Energy => "∫ Σ |power| dt, the numerator of C2 (eq. 14).",
         Criterion::Torque => "∫ Σ Γ² dt, the numerator of C1 (eq. 13).",

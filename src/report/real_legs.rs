@@ -2,6 +2,7 @@
 
 use super::figure::Figure;
 use super::ink::Ink;
+use super::number::{digits, given};
 use super::plot::{Curve, Limit, Plot};
 use super::scale::domain;
 use super::scene::{Dash, Xy};
@@ -44,7 +45,7 @@ fn loads(s: &Subject, lift: &Lift) -> Figure {
     let d = s.description();
     let feet = d.legs[0].members.len() as f64;
     let least = d.limits.min_vertical_force / feet;
-    limit(&mut plot, least, format!("least {least} N"));
+    limit(&mut plot, least, format!("least {} N", given(least)));
     let caption = "With the shares that leave most room within the limits of every foot and joint.";
     Figure::plot("real-loads", &plot, caption)
 }
@@ -99,7 +100,7 @@ fn verdict(legs: &RealLegs) -> String {
 
 fn worst(what: &str, w: &Worst) -> Markup {
     html! {
-        li { (what) ": a margin of " (format!("{:.4}", w.margin)) ", half step " (w.half_step) " at " (format!("{:.3}", w.time))
+        li { (what) ": a margin of " (digits(w.margin, 4)) ", half step " (w.half_step) " at " (digits(w.time, 3))
             " s. In the way of more: " (w.binding.iter().map(|b| spaced(&b.limit)).collect::<Vec<_>>().join(", ")) "." }
     }
 }

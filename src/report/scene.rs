@@ -96,8 +96,40 @@ impl Scene {
         self.marks.push(Mark::Dot { at, radius, ink, opacity: 1.0 });
     }
 
+    /// A circle with paper in it.
+    pub fn ring(&mut self, at: Xy, radius: f64, ink: Ink) {
+        self.dot(at, radius, ink);
+        self.dot(at, radius - 1.4, Ink::Paper);
+    }
+
     pub fn text(&mut self, at: Xy, text: &str, size: f64, anchor: Anchor, ink: Ink) {
         self.write(at, text, size, Weight::Regular, anchor, ink);
+    }
+
+    /// A quantity with its unit, and between them the power of ten that numbers beside it leave out.
+    pub fn quantity(&mut self, at: Xy, words: [&str; 2], power: i32, size: f64, anchor: Anchor, ink: Ink) {
+        let [name, unit] = words;
+        let before = if name.is_empty() { String::new() } else { format!("{name}, ") };
+        if power == 0 {
+            let text = if unit.is_empty() { name.into() } else { before + unit };
+            return self.text(at, &text, size, anchor, ink);
+        }
+        let (ten, exponent) = (before + "10", power.to_string().replace('-', "−"));
+        let width = |text: &str, size: f64| Weight::Regular.width(text, size);
+        let small = 0.72 * size;
+        let ends = [width(&ten, size), width(&exponent, small), width(&format!(" {unit}"), size)];
+        let all: f64 = ends.iter().sum();
+        let start = match anchor {
+            Anchor::Start => at[0],
+            Anchor::Middle => at[0] - 0.5 * all,
+            Anchor::End => at[0] - all,
+        };
+        self.text([start, at[1]], &ten, size, Anchor::Start, ink);
+        self.text([start + ends[0], at[1] - 0.4 * size], &exponent, small, Anchor::Start, ink);
+        if !unit.is_empty() {
+            let after = start + ends[0] + ends[1] + width(" ", size);
+            self.text([after, at[1]], unit, size, Anchor::Start, ink);
+        }
     }
 
     pub fn write(&mut self, at: Xy, text: &str, size: f64, weight: Weight, anchor: Anchor, ink: Ink) {

@@ -1,6 +1,7 @@
 //! Stick diagrams (figs. 6–11, top left): poses of the virtual legs at equal times, to scale.
 
 use super::figure::Figure;
+use super::font::Weight;
 use super::ink::Ink;
 use super::scale::Scale;
 use super::scene::{Anchor, Dash, Pen, Scene, Xy};
@@ -13,7 +14,7 @@ const SMALL: f64 = 11.0;
 
 /// From the side; where the robot moves sideways also from the front and in space.
 pub fn figures(s: &Subject) -> Vec<Figure> {
-    let side = View { horizontal: [1.0, 0.0, 0.0], vertical: [0.0, 1.0, 0.0], axis: "Xf, m" };
+    let side = View { horizontal: [1.0, 0.0, 0.0], vertical: [0.0, 1.0, 0.0], axis: "Xf" };
     let caption = format!(
         "One step in {} poses at equal times. Blue: virtual leg 1 ({}); orange: virtual leg 2 ({}). Dotted: the feet's paths and the platform's mass centre.",
         2 * POSES,
@@ -22,7 +23,7 @@ pub fn figures(s: &Subject) -> Vec<Figure> {
     );
     let mut figures = vec![Figure::drawing("sticks", "Stick diagram", side.draw(s, 640.0), caption)];
     if s.description().lateral {
-        let front = View { horizontal: [0.0, 0.0, 1.0], vertical: [0.0, 1.0, 0.0], axis: "Zf, m" };
+        let front = View { horizontal: [0.0, 0.0, 1.0], vertical: [0.0, 1.0, 0.0], axis: "Zf" };
         let mut figure = Figure::drawing(
             "sticks-behind",
             "Stick diagram from behind",
@@ -72,7 +73,8 @@ impl View {
         let ([x0, x1], [y0, y1]) = (bounds(0), bounds(1));
         let (left, right, top, bottom) = (40.0, 16.0, 14.0, 36.0);
         // To scale, and no taller than wide.
-        let scale = ((width - left - right) / (x1 - x0).max(1e-6)).min(0.58 * width / (y1 - y0).max(1e-6));
+        let least = 1e-3 * s.description().leg_length();
+        let scale = ((width - left - right) / (x1 - x0).max(least)).min(0.58 * width / (y1 - y0).max(least));
         let height = top + bottom + scale * (y1 - y0);
         let middle = 0.5 * (left + width - right);
         let reach = 0.5 * scale * (x1 - x0);
@@ -121,19 +123,20 @@ impl View {
         let per_unit = (x.range[1] - x.range[0]) / (x.domain[1] - x.domain[0]);
         let wide =
             Scale { domain: [left, right].map(|at| x.domain[0] + (at - x.range[0]) / per_unit), range: [left, right] };
-        for tick in wide.ticks(count) {
-            let at = wide.at(tick);
+        let ticks = wide.roomy_ticks(count, |label| Weight::Regular.width(label, SMALL));
+        for (tick, label) in &ticks.list {
+            let at = wide.at(*tick);
             scene.line(&[[at, ground], [at, ground + 4.0]], Pen::new(Ink::Axis, 1.0));
-            scene.text([at, ground + 16.0], &wide.label(tick, count), SMALL, Anchor::Middle, Ink::Muted);
+            scene.text([at, ground + 16.0], label, SMALL, Anchor::Middle, Ink::Muted);
         }
-        let rows = 4;
-        for tick in y.ticks(rows) {
-            let at = y.at(tick);
-            scene.text([left - 7.0, at + 4.0], &y.label(tick, rows), SMALL, Anchor::End, Ink::Muted);
+        let heights = y.ticks(4);
+        for (tick, label) in &heights.list {
+            let at = y.at(*tick);
+            scene.text([left - 7.0, at + 4.0], label, SMALL, Anchor::End, Ink::Muted);
             scene.line(&[[left - 4.0, at], [left, at]], Pen::new(Ink::Axis, 1.0));
         }
-        scene.text([right, ground + 31.0], self.axis, SMALL, Anchor::End, Ink::Muted);
-        scene.text([left + 6.0, 11.0], "Yf, m", SMALL, Anchor::Start, Ink::Muted);
+        scene.quantity([right, ground + 31.0], [self.axis, "m"], ticks.power, SMALL, Anchor::End, Ink::Muted);
+        scene.quantity([left + 6.0, 11.0], ["Yf", "m"], heights.power, SMALL, Anchor::Start, Ink::Muted);
     }
 }
 

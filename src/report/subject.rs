@@ -1,35 +1,43 @@
 //! What a report is about: a result and the walk that it describes.
 
 use super::plot::{Axis, Plot, Span};
+use super::record::Record;
 use super::scene::{Dash, Xy};
-use super::{ReportError, ink::Ink, plot::Curve};
+use super::{ink::Ink, plot::Curve};
 use crate::model::{Description, Gait};
 use crate::motion::Motion;
-use crate::readback::Readback;
 use crate::result::GaitResult;
+use crate::stance::Undefined;
 use crate::walk::{Moment, Walk};
 
 /// Intervals per half step with which curves are drawn.
 const INTERVALS: usize = 80;
 
 pub struct Subject<'a> {
+    /// Names it on the page and in files; no other has the same.
+    pub id: String,
     pub result: GaitResult,
     pub gait: &'a dyn Gait,
     pub motion: Motion,
     pub walk: Walk<'a>,
-    /// The criterion, per metre of travel; of an optimum there always is one.
+    /// The criterion, per metre of travel.
     pub cost: f64,
+    /// Energy per weight and distance.
+    pub transport: f64,
 }
 
 impl<'a> Subject<'a> {
-    /// Follows the motion of a result that was derived here, or read back ([`Readback::new`]).
+    /// Follows the motion of a confirmed result; of any other there is none.
     ///
     /// # Errors
-    /// If the result cannot be used, or its motion cannot be followed.
-    pub fn new(result: GaitResult, gaits: &[&'a dyn Gait]) -> Result<Subject<'a>, ReportError> {
-        let Readback { result, gait, motion, cost } = Readback::issued(result, gaits)?;
+    /// If its motion cannot be followed.
+    pub fn new(record: &Record<'a>, id: String) -> Result<Option<Subject<'a>>, Undefined> {
+        let (Some(gait), Some(motion), result) = (record.gait(), record.result.motion(), record.result.clone()) else {
+            return Ok(None);
+        };
+        let (Some(cost), Some(transport)) = (result.cost, record.cost_of_transport()) else { return Ok(None) };
         let walk = Walk::even(gait, &motion, INTERVALS)?;
-        Ok(Subject { result, gait, motion, walk, cost })
+        Ok(Some(Subject { id, result, gait, motion, walk, cost, transport }))
     }
 
     pub fn description(&self) -> &'a Description {

@@ -2,6 +2,7 @@
 
 use super::figure::Figure;
 use super::ink::Ink;
+use super::number::given;
 use super::plot::{Axis, Curve};
 use super::subject::Subject;
 
@@ -16,7 +17,7 @@ pub fn clearance(s: &Subject) -> Figure {
         plot.curves.push(Curve::new(s.short_leg_name(leg), Ink::Leg(leg), vec![segment]));
     }
     plot.forbidden = s.over_time(|m| 4.0 * MILLI * h * m.share * (1.0 - m.share));
-    plot.note = Some(format!("the parabola is {} mm high", MILLI * h));
+    plot.note = Some(format!("the parabola is {} mm high", given(MILLI * h)));
     Figure::plot(
         "clearance",
         &plot,

@@ -100,11 +100,16 @@ impl Task<'_> {
 
     /// Minimizes from the optimum of a neighbouring problem: directly, or as from anywhere if that leads nowhere.
     pub fn follow(&self, start: &[f64], observe: Observer) -> Local {
-        let local = self.polish(start, f64::INFINITY, observe);
+        let local = self.carry(start, observe);
         if matches!(local.status, Status::Optimal | Status::Stopped) {
             return local;
         }
         self.descend(start, observe)
+    }
+
+    /// Minimizes directly from the optimum of a neighbouring problem, and from nowhere else if that leads nowhere.
+    pub fn carry(&self, start: &[f64], observe: Observer) -> Local {
+        self.polish(start, f64::INFINITY, observe)
     }
 
     fn cycle(&self) -> Cycle<'_> {
