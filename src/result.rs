@@ -12,8 +12,8 @@ use crate::search::multi_start::Found;
 use crate::sensitivity::Sensitivities;
 use crate::sqp;
 use crate::stability::Stability;
-use crate::verdict::Verdict;
-use crate::verify::{Finding, JointPeak, VerifyError};
+use crate::verdict::{self, Verdict};
+use crate::verify::{Finding, JointPeak, VerifyError, verify};
 use serde::{Deserialize, Serialize};
 
 /// The name of a file for the result of a gait (by its key): no two tasks share one, and those of a sweep stand in the order of
@@ -41,7 +41,7 @@ fn digits(speed: f64) -> String {
 pub enum Status {
     /// A local optimum whose receipt holds.
     Optimal,
-    /// The constraints conflict from every start.
+    /// No motion keeps to all constraints, whatever it costs: they conflict from every start.
     Infeasible,
     /// No point was found that can be called an optimum.
     NotConverged,
@@ -104,7 +104,7 @@ pub struct GaitResult {
     /// For an infeasible problem: the constraints that conflict, worst first.
     #[serde(default)]
     pub conflicts: Vec<ConflictEntry>,
-    /// For an infeasible problem: the nearest speed with a feasible motion, if one was found, m/s.
+    /// For an infeasible problem: the nearest speed at which the same search finds an optimum, if there is one, m/s.
     pub nearest_speed: Option<f64>,
     /// All distinct local optima found, best first.
     #[serde(default)]
@@ -209,7 +209,7 @@ impl GaitResult {
             }
         }
         if found.optima.is_empty() {
-            result.explain(found.failure.as_ref());
+            result.explain(gait, found);
         }
         result.seconds = seconds();
         result
@@ -351,8 +351,16 @@ impl GaitResult {
     }
 
     /// Says why there is no optimum.
-    fn explain(&mut self, failure: Option<&Local>) {
-        let Some(local) = failure else {
+    fn explain(&mut self, gait: &dyn Gait, found: &Found) {
+        let exists = |local: &Local| {
+            let receipt = verify(gait.description(), &local.motion, self.speed, verdict::GRID);
+            receipt.is_ok_and(|r| r.max_violation <= verdict::VIOLATION && r.cycle_error <= verdict::CYCLE_ERROR)
+        };
+        if found.motion.as_ref().is_some_and(exists) {
+            self.message = "motions exist at this speed, but no start led to an optimum of the criterion".into();
+            return;
+        }
+        let Some(local) = found.failure.as_ref() else {
             self.message = "no start led anywhere".into();
             return;
         };

@@ -10,7 +10,7 @@ use piaffe::search::multi_start::{Settings, search_from};
 use std::time::Instant;
 
 pub fn run(task: Task, real_legs: bool, settings: &Settings, json: Option<&str>) -> anyhow::Result<bool> {
-    let Task { mut gait, speed, .. } = task;
+    let Task { mut gait, criterion, speed } = task;
     let altered = real_legs.then(|| Altered::at_real_legs(gait)).transpose().map_err(anyhow::Error::msg)?;
     let bar = progress(settings.starts);
     let mut result = solve(task, &[], settings, &bar);
@@ -23,7 +23,7 @@ pub fn run(task: Task, real_legs: bool, settings: &Settings, json: Option<&str>)
     }
     if result.status == Status::Infeasible {
         bar.set_message("nearest speed that works");
-        result.nearest_speed = nearest_speed(gait, speed, settings);
+        result.nearest_speed = nearest_speed(gait, criterion, speed, settings);
     }
     result.examine(gait);
     bar.finish_and_clear();

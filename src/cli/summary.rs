@@ -57,7 +57,7 @@ pub fn print(description: &Description, r: &GaitResult) -> std::io::Result<()> {
     }
     if r.status == Status::Infeasible {
         match r.nearest_speed {
-            Some(v) => writeln!(out, "  The nearest speed that works is {} m/s.", decimal(v, 3))?,
+            Some(v) => writeln!(out, "  The nearest speed that works is {v} m/s.")?,
             None => writeln!(out, "  No speed nearby works either: loosen one of these limits in the specification.")?,
         }
     }

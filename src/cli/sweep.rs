@@ -88,11 +88,13 @@ fn at_real_legs(gaits: &[&'static dyn Gait]) -> anyhow::Result<Vec<&'static dyn 
 
 fn line(gait: &'static dyn Gait, criteria: &[Criterion], speeds: &[f64], settings: &Settings, folder: &Folder) -> Line {
     let mut results = sweep(gait, criteria, speeds, settings, folder);
-    let maximum = maximum_speed(gait, &results.concat(), settings, folder);
-    for (line, criterion) in results.iter_mut().zip(criteria) {
-        let new = maximum.iter().filter(|m| !speeds.contains(&m.speed));
-        line.extend(new.map(|m| m.optimum(gait, *criterion, settings, folder)));
-        line.sort_by(|a, b| a.speed.total_cmp(&b.speed));
+    let mut maximum = maximum_speed(gait, &results.concat(), settings, folder);
+    if let Some(maximum) = &mut maximum {
+        let known = results.iter().flatten().filter(|r| r.is_optimal()).map(|r| r.speed).fold(0.0, f64::max);
+        for (line, new) in results.iter_mut().zip(maximum.optima(gait, criteria, known, settings, folder)) {
+            line.push(new);
+            line.sort_by(|a, b| a.speed.total_cmp(&b.speed));
+        }
     }
     Line { gait, maximum, results }
 }
@@ -138,7 +140,13 @@ fn progress(effort: u64) -> ProgressBar {
 
 fn tell(lines: &[Line], criteria: &[Criterion], speeds: &[f64], overview: &Overview) -> std::io::Result<()> {
     let mut out = output::person();
-    out.write_all(table(lines, criteria, speeds).as_bytes())?;
+    let mut speeds: Vec<f64> = speeds.iter().copied().chain(overview.maximum_speeds.iter().map(|m| m.speed)).collect();
+    speeds.sort_by(f64::total_cmp);
+    speeds.dedup();
+    out.write_all(table(lines, criteria, &speeds).as_bytes())?;
+    for hole in lines.iter().flat_map(|line| line.results.iter().flatten()).filter(|r| !r.is_optimal()) {
+        writeln!(out, "{}, {} at {} m/s: {}", hole.gait, hole.criterion.name(), hole.speed, hole.message)?;
+    }
     for line in lines {
         let name = line.gait.description().key;
         match overview.maximum_speeds.iter().find(|m| m.gait == name) {
@@ -147,7 +155,10 @@ fn tell(lines: &[Line], criteria: &[Criterion], speeds: &[f64], overview: &Overv
                 let why = if weightiest.is_empty() { "no single constraint".into() } else { weightiest.join(", ") };
                 writeln!(out, "{name} goes up to {} m/s; what stops it: {why}", decimal(m.speed, 3))?;
             }
-            None => writeln!(out, "{name}: no greatest speed found")?,
+            None if line.results.iter().flatten().any(GaitResult::is_optimal) => {
+                writeln!(out, "{name}: no greatest speed found")?;
+            }
+            None => writeln!(out, "{name}: no optimum at any of these speeds")?,
         }
     }
     for comparison in &overview.comparisons {
@@ -156,7 +167,7 @@ fn tell(lines: &[Line], criteria: &[Criterion], speeds: &[f64], overview: &Overv
     Ok(())
 }
 
-/// Costs over speeds, a column per gait and criterion; a dash where there is no optimum.
+/// Costs over speeds, a column per gait and criterion; a dash where no optimum was found, nothing where none was sought.
 fn table(lines: &[Line], criteria: &[Criterion], speeds: &[f64]) -> String {
     let mut text = format!("{:>8}", "m/s");
     for criterion in criteria {
@@ -169,8 +180,11 @@ fn table(lines: &[Line], criteria: &[Criterion], speeds: &[f64]) -> String {
         text += &format!("{:>8}", decimal(*speed, 3));
         for c in 0..criteria.len() {
             for line in lines {
-                let cost = line.results[c].iter().find(|r| r.speed == *speed).and_then(|r| r.cost);
-                text += &format!(" {:>16}", cost.map_or("-".into(), |cost| decimal(cost, 4)));
+                let cell = match line.results[c].iter().find(|r| r.speed == *speed) {
+                    Some(result) => result.cost.map_or("-".into(), |cost| decimal(cost, 4)),
+                    None => String::new(),
+                };
+                text += &format!(" {cell:>16}");
             }
         }
         text.push('\n');

@@ -54,6 +54,11 @@ impl Drive {
         (entries, entries * (entries + 1))
     }
 
+    /// Which quantity its rate is.
+    pub fn rate(&self) -> usize {
+        self.rate
+    }
+
     /// N·m.
     #[inline]
     pub fn torque(&self, y: &[f64]) -> f64 {

@@ -6,7 +6,7 @@
 //! Equalities: β̇ and β close the cycle (eq. 23, 24; the former as σ), the swing foot lands, and the
 //! mean speed is the given one.
 //!
-//! `phase` is one half step, `dip` a constraint between its nodes, `problem` the nonlinear program, `hessian` its
+//! `phase` is one half step, `dip` a constraint between its nodes, `still` a joint that it holds, `problem` the nonlinear program, `hessian` its
 //! second derivatives.
 
 mod dip;
@@ -14,6 +14,7 @@ mod hessian;
 mod phase;
 mod problem;
 mod sample;
+mod still;
 
 use crate::constraints::{ImpactConstraints, PathConstraint, path_constraints};
 use crate::cost::{Integral, integrate};
@@ -28,6 +29,7 @@ use hessian::Workspace;
 use phase::Phase;
 pub use problem::{CLOSURE, Place};
 pub use sample::Sample;
+pub use still::{AT_REST, Still};
 
 /// Elements per half step, of 4 intervals each: more where the polynomials of eq. 15 may bend more often.
 ///
@@ -66,6 +68,8 @@ pub struct Cycle<'a> {
     phases: Vec<Phase>,
     path: Vec<PathConstraint>,
     impact: ImpactConstraints,
+    /// Held joints are held by equations; else by what their power costs.
+    by_equations: bool,
     /// Forward travel in all half steps, m, and how long they take, s.
     travel: f64,
     duration: f64,
@@ -184,6 +188,7 @@ impl<'a> Cycle<'a> {
             phases,
             path: path_constraints(d),
             impact,
+            by_equations: true,
             travel: 0.0,
             duration: 0.0,
         }
@@ -219,7 +224,11 @@ impl<'a> Cycle<'a> {
     pub fn twice_as_fine(&self) -> Option<Cycle<'a>> {
         let present = self.phases[0].mesh.elements;
         let some = present < FINEST * elements(self.description());
-        some.then(|| Cycle::with_elements(self.gait, self.criterion, self.speed, 2 * present))
+        some.then(|| {
+            let mut finer = Cycle::with_elements(self.gait, self.criterion, self.speed, 2 * present);
+            finer.hold(&self.held().collect::<Vec<_>>());
+            finer
+        })
     }
 
     pub fn description(&self) -> &'a Description {

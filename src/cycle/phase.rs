@@ -26,6 +26,8 @@ pub struct Phase {
     pub cost: Integral,
     /// Constraints imposed between nodes.
     pub dips: Vec<Dip>,
+    /// Joints that are held still.
+    pub still: Vec<usize>,
     /// Configuration and velocity at its start, after the impact.
     pub q_start: Vec<f64>,
     pub qd_start: Vec<f64>,
@@ -71,6 +73,7 @@ impl Phase {
             parameters: z(layout.len()),
             cost: Integral::new(d, &mesh),
             dips: Vec::new(),
+            still: Vec::new(),
             q_start: z(nq),
             qd_start: z(nq),
             q_end: z(nq),

@@ -9,6 +9,7 @@ use super::phase::Phase;
 use super::{Cycle, Label, renamed};
 use crate::constraints::PathConstraint;
 use crate::constraints::sharing::pitches;
+use crate::cost::Drive;
 use crate::lgl::NODES;
 use crate::model::Description;
 use crate::sqp::{self, Problem, Undefined, Values, dot};
@@ -175,7 +176,14 @@ impl Cycle<'_> {
         let (name, phase) = match i {
             _ if i < speed => (names[i % CLOSURE], i / CLOSURE),
             _ if i == speed => return Label { name: "mean speed".into(), half_step: self.phases.len(), time: 0.0 },
-            _ => ("pitching at the impact on real feet", i - speed - 1),
+            _ if i < equalities(self.description()) => ("pitching at the impact on real feet", i - speed - 1),
+            _ => {
+                let held = self.holding().nth(i - equalities(self.description()));
+                let (phase, joint, node) = held.unwrap_or_default();
+                let name = format!("{} held still", self.description().joints[joint].name);
+                let time = self.instant(phase, node) * self.phases[phase].duration();
+                return Label { name, half_step: phase + 1, time };
+            }
         };
         Label { name: name.into(), half_step: phase + 1, time: self.phases[phase].duration() }
     }
@@ -240,8 +248,9 @@ impl Cycle<'_> {
         let (nq, n, m) = (d.orientations(), self.variables.total(), self.variables.per_phase());
         let units = self.units;
         let (length, momentum) = (units.length, units.angular_momentum());
-        self.equality_rows.fill(0.0);
-        let mut rows = self.equality_rows.chunks_mut(n);
+        let mut table = std::mem::take(&mut self.equality_rows);
+        table.fill(0.0);
+        let mut rows = table.chunks_mut(n);
         for (k, p) in self.phases.iter().enumerate() {
             let np = p.layout.len();
             let last = p.last() * np;
@@ -272,13 +281,22 @@ impl Cycle<'_> {
             }
         }
         let pitch = nq + pitch(d);
-        for (k, (p, row)) in self.phases.iter().zip(rows).enumerate() {
+        let pitching = if pitches(d) { self.phases.len() } else { 0 };
+        for (k, (p, row)) in self.phases.iter().zip(rows.by_ref().take(pitching)).enumerate() {
             let jacobian = p.touchdown_row(d, pitch);
             for j in 0..nq {
                 row[k * m + self.variables.q(j)] += jacobian[j] / momentum;
                 row[k * m + self.variables.qd(j)] += jacobian[nq + j] / momentum;
             }
         }
+        for (phase, joint, node) in self.holding() {
+            let p = &self.phases[phase];
+            let rate = p.instants.gradient(node, p.instants.quantities.rate(joint));
+            if let Some(row) = rows.next() {
+                p.project(rate, 1.0 / self.units.rate(), row);
+            }
+        }
+        self.equality_rows = table;
     }
 
     fn differentiate_impacts(&mut self) {
@@ -307,7 +325,7 @@ impl Problem for Cycle<'_> {
     }
 
     fn equalities(&self) -> usize {
-        equalities(self.description())
+        equalities(self.description()) + self.holding().count()
     }
 
     fn inequalities(&self) -> usize {
@@ -339,10 +357,15 @@ impl Problem for Cycle<'_> {
             equalities[1] = (p.stance.sigma[p.last()] - p.momentum_end[0]) / units.angular_momentum();
             equalities[2] = p.placement[d.positions() + 1] / units.length;
         }
-        let (speed, pitching) = (self.speed_equation(), self.speed_equation() + 1);
-        out.equalities[speed] = (self.travel - self.asked_travel()) / units.length;
-        for (slot, p) in out.equalities[pitching..].iter_mut().zip(&self.phases) {
+        let speed = self.speed_equation();
+        let (own, holding) = out.equalities.split_at_mut(equalities(d));
+        own[speed] = (self.travel - self.asked_travel()) / units.length;
+        for (slot, p) in own[speed + 1..].iter_mut().zip(&self.phases) {
             *slot = p.impact[pitch(d)] / units.angular_momentum();
+        }
+        for (slot, (phase, joint, node)) in holding.iter_mut().zip(self.holding()) {
+            let instants = &self.phases[phase].instants;
+            *slot = instants.value(node, instants.quantities.rate(joint)) / self.units.rate();
         }
         let mut slots = out.inequalities.iter_mut();
         for p in &self.phases {
@@ -458,6 +481,23 @@ impl Problem for Cycle<'_> {
         for (row, slot) in self.impact_rows.chunks(n).zip(slots) {
             *slot = dot(row, direction);
         }
+    }
+
+    fn kinks(&self) -> usize {
+        self.resting().count()
+    }
+
+    fn kink(&self, i: usize, row: &mut [f64]) -> f64 {
+        let Some((phase, joint, node)) = self.resting().nth(i) else { return 0.0 };
+        let p = &self.phases[phase];
+        let y = p.instants.quantities;
+        row.fill(0.0);
+        p.project(p.instants.gradient(node, y.rate(joint)), 1.0, row);
+        // Of all joints that this one stands for.
+        let drives = Drive::all(self.description());
+        let torques =
+            drives.iter().filter(|drive| drive.rate() == y.rate(joint)).map(|d| d.torque(p.linearized(node)).abs());
+        p.mesh.weights[node] * p.duration() * torques.sum::<f64>() * self.per_work()
     }
 
     fn hessian(&mut self, equality_multipliers: &[f64], inequality_multipliers: &[f64], hessian: &mut [f64]) -> bool {

@@ -4,7 +4,7 @@
 //! as in the search. But nothing of the search is taken over: the multipliers are fitted to the gradients ([`multipliers`]).
 //! A multiplier is a price: what the criterion would gain per unit by which its limit is loosened.
 
-use crate::cycle::{Cycle, Label, Place, theta};
+use crate::cycle::{AT_REST, Cycle, Label, Place, theta};
 use crate::model::Gait;
 use crate::motion::{Criterion, Motion};
 use crate::search::refine::dips;
@@ -148,6 +148,10 @@ impl<'a> Linearized<'a> {
     /// Of a motion that `cycle` has just simulated.
     fn on(mut cycle: Cycle<'a>, theta: &[f64]) -> Result<Linearized<'a>, Undefined> {
         dips(&cycle).and_then(|dips| dips.impose(&mut cycle)).map_err(|_| Undefined)?;
+        // Where joints rest, least energy has kinks.
+        let still = cycle.still(AT_REST);
+        cycle.hold(&still);
+        cycle.let_go();
         let scale = cycle.scale();
         let multipliers = multipliers(&mut cycle, theta, scale)?;
         Ok(Linearized { cycle, theta: theta.to_vec(), multipliers })

@@ -1,10 +1,11 @@
 //! Optima over speeds (§6.5): continuation both ways, from the other criterion, and restarts.
 //!
 //! Continuation alone stays in its basin, so every speed also gets starts of its own; and what is
-//! found there is carried to the neighbours until nothing improves.
+//! found there is carried to the neighbours until nothing improves. To a speed without an optimum the nearest ones of all
+//! criteria are carried, from both sides and by small steps of the speed.
 
 use super::journal::{Journal, common, step};
-use super::local::Task;
+use super::local::{Local, Task};
 use super::multi_start::{Settings, search_from};
 use crate::model::Gait;
 use crate::motion::Criterion;
@@ -14,6 +15,9 @@ use std::time::Instant;
 
 /// Rounds, each down and up the speeds, in which optima are carried to their neighbours.
 const ROUNDS: usize = 4;
+
+/// Shortest step towards a speed without an optimum, as a share of the way.
+const SHORTEST: f64 = 0.1;
 
 /// How often a point is visited at least: once to search, twice to carry optima to it.
 pub const VISITS: u64 = 3;
@@ -90,15 +94,26 @@ fn carry(
     let count = lines[c].len();
     sources.extend(k.checked_sub(1).into_iter().chain((k + 1 < count).then_some(k + 1)).map(|n| (c, n)));
     sources.extend((0..lines.len()).filter(|other| *other != c).map(|other| (other, k)));
+    if !lines[c][k].is_optimal() {
+        for line in (c..lines.len()).chain(0..c) {
+            let optimal = |n: &usize| lines[line][*n].is_optimal();
+            sources.extend((0..k).rfind(optimal).into_iter().chain((k + 1..count).find(optimal)).map(|n| (line, n)));
+        }
+    }
     let (mut better, mut any_fresh) = (false, false);
     for (line, at) in sources {
         let Some(theta) = lines[line][at].theta() else { continue };
+        let from = lines[line][at].speed;
         let point = &lines[c][k];
         let (criterion, speed) = (point.criterion, point.speed);
         let name = format!("{} {} {speed} carried to", gait.description().key, criterion.name());
         let inputs = (common(gait, settings), &point.local_optima, &theta);
         let (changed, fresh) = step(journal, &name, &inputs, || {
-            let local = Task { gait, criterion, speed }.follow(&theta, &mut |_| Control::Continue);
+            let task = Task { gait, criterion, speed };
+            let local = match point.is_optimal() {
+                true => task.follow(&theta, &mut |_| Control::Continue),
+                false => walk(&task, from, &theta),
+            };
             let mut result = point.clone();
             result.join(gait, &local).then_some(result)
         });
@@ -112,4 +127,24 @@ fn carry(
         }
     }
     (better, any_fresh)
+}
+
+/// From the optimum of a neighbouring problem at another speed to that of the task, by steps of the speed that lead from optimum to
+/// optimum.
+fn walk(task: &Task, mut from: f64, theta: &[f64]) -> Local {
+    let (whole, mut theta) = (task.speed - from, theta.to_vec());
+    let mut step = whole;
+    loop {
+        let last = step.abs() >= (task.speed - from).abs();
+        let speed = if last { task.speed } else { from + step };
+        let local = Task { speed, ..*task }.follow(&theta, &mut |_| Control::Continue);
+        if local.status.is_optimal() && !last {
+            (from, theta) = (speed, local.theta);
+            continue;
+        }
+        step *= 0.5;
+        if local.status.is_optimal() || step.abs() <= SHORTEST * whole.abs() {
+            return local;
+        }
+    }
 }

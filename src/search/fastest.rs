@@ -3,7 +3,7 @@
 use super::atlas::search_at;
 use super::journal::{Journal, common, step};
 use super::local::{Conflict, Local, Task};
-use super::multi_start::{Settings, start};
+use super::multi_start::{Settings, search, start};
 use crate::model::Gait;
 use crate::motion::Criterion;
 use crate::result::GaitResult;
@@ -19,10 +19,16 @@ const FASTEST: f64 = 6.0;
 /// Starts at a speed that may have no motion at all, where their number is not given.
 const STARTS: usize = 4;
 
+/// Speeds, each twice as far off as the one before, at which the question is asked again.
+const ATTEMPTS: usize = 8;
+
+/// What ends a gait where motions go on but optima do not.
+const BEYOND: &str = "finding an optimum among the motions that there are";
+
 /// How fast a gait goes.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct MaximumSpeed {
-    /// The greatest speed with a feasible motion, as far as local searches can tell.
+    /// The greatest speed with a feasible motion, as far as local searches can tell; after [`MaximumSpeed::optima`] one with an optimum.
     pub speed: f64,
     /// What conflicts just above it, weightiest first.
     pub ended_by: Vec<String>,
@@ -75,14 +81,33 @@ fn climb(gait: &dyn Gait, speed: f64, from: &[f64], settings: &Settings) -> Opti
 }
 
 impl MaximumSpeed {
-    /// The optimum at the greatest speed.
-    pub fn optimum(
-        &self,
+    /// The optima at the greatest speed. Motions may go on where no optimum is found any more: as long as no criterion has one,
+    /// the speed is lowered towards `known`, at which some has.
+    pub fn optima(
+        &mut self,
         gait: &dyn Gait,
-        criterion: Criterion,
+        criteria: &[Criterion],
+        known: f64,
         settings: &Settings,
         journal: &dyn Journal,
-    ) -> GaitResult {
+    ) -> Vec<GaitResult> {
+        while self.speed > known {
+            let optima: Vec<_> = criteria.iter().map(|c| self.optimum(gait, *c, settings, journal)).collect();
+            if optima.iter().any(GaitResult::is_optimal) {
+                return optima;
+            }
+            let slower = 0.5 * (known + self.speed);
+            self.speed =
+                if slower - known > BISECTION * Units::new(gait.description()).speed() { slower } else { known };
+            self.ended_by = vec![BEYOND.into()];
+            let name = format!("{} motion at {}", gait.description().key, self.speed);
+            let slower = || attempt(gait, self.speed, Some(&self.theta), settings).theta;
+            self.theta = step(journal, &name, &(common(gait, settings), &self.theta), slower).0;
+        }
+        Vec::new()
+    }
+
+    fn optimum(&self, gait: &dyn Gait, criterion: Criterion, settings: &Settings, journal: &dyn Journal) -> GaitResult {
         search_at(gait, criterion, self.speed, settings, std::slice::from_ref(&self.theta), journal).0
     }
 }
@@ -107,9 +132,9 @@ fn attempt(gait: &dyn Gait, speed: f64, from: Option<&[f64]>, settings: &Setting
     best.unwrap_or_else(|| of(&start(gait, Criterion::Torque, speed, settings.seed, 0)))
 }
 
-/// For a speed without a feasible motion the nearest one with one, as far as local
-/// searches can tell. Tries speeds ever further off on both sides, then bisects from the motion found.
-pub fn nearest_speed(gait: &dyn Gait, speed: f64, settings: &Settings) -> Option<f64> {
+/// For a speed without a feasible motion the nearest one at which the same question has an answer, as far as
+/// local searches can tell. Tries speeds ever further off on both sides, then bisects from the motion found; and asks there.
+pub fn nearest_speed(gait: &dyn Gait, criterion: Criterion, speed: f64, settings: &Settings) -> Option<f64> {
     let few = Settings { starts: Some(settings.starts.unwrap_or(STARTS).min(3)), ..settings.clone() };
     let none = Settings { starts: Some(0), ..settings.clone() };
     let unit = Units::new(gait.description()).speed();
@@ -133,9 +158,35 @@ pub fn nearest_speed(gait: &dyn Gait, speed: f64, settings: &Settings) -> Option
                     bad = middle;
                 }
             }
-            return Some(good);
+            if let Some(answered) = answered(gait, criterion, [speed, good], settings) {
+                return Some(answered);
+            }
         }
         (slower, faster) = (slower / 1.5, faster * 1.5);
     }
     None
+}
+
+/// From `good`, or further away from `asked`, the first speed at which a search finds an optimum whose receipt holds, with
+/// nothing known but the question.
+fn answered(gait: &dyn Gait, criterion: Criterion, [asked, good]: [f64; 2], settings: &Settings) -> Option<f64> {
+    let mut distance = good - asked;
+    for _ in 0..ATTEMPTS {
+        let speed = legible(asked + distance, distance > 0.0);
+        if speed > 0.0 && speed != asked {
+            let found = search(gait, criterion, speed, settings, &|_| {});
+            if GaitResult::new(gait, criterion, speed, &found, settings.seed, || 0.0).is_optimal() {
+                return Some(speed);
+            }
+        }
+        distance *= 2.0;
+    }
+    None
+}
+
+/// A positive number with four digits, rounded up or down: what is printed is what was tried.
+fn legible(number: f64, up: bool) -> f64 {
+    let unit = 10f64.powf(number.log10().floor() - 3.0);
+    let digits = if up { (number / unit).ceil() } else { (number / unit).floor() };
+    format!("{:.3e}", digits * unit).parse().unwrap_or(number)
 }

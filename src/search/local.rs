@@ -1,13 +1,15 @@
 //! One local optimum: from a start to a motion that satisfies every constraint between nodes too.
 
-use super::nearest::nearest;
+use super::nearest::{nearest, reach};
 use super::refine::dips;
-use crate::cycle::{Cycle, Label, elements};
+use crate::cycle::{AT_REST, Cycle, Label, Still, elements};
 use crate::model::Gait;
 use crate::motion::{Costs, Criterion, Motion};
-use crate::sqp::{self, Control, KktResidual, Options, Solution, Status};
+use crate::sqp::{self, Control, KktResidual, Options, Solution, Status, multipliers};
 use crate::stance::Undefined;
 
+/// Violation (scaled) that is none.
+const FEASIBILITY: f64 = 1e-8;
 /// Violation between nodes (scaled) at which refinement stops.
 const DENSE: f64 = 1e-7;
 /// Change of an active row between nodes at which it does (see `look`).
@@ -39,6 +41,13 @@ pub struct Local {
     pub conflicts: Vec<Conflict>,
 }
 
+impl Local {
+    /// Whether it keeps to all limits, optimum or not.
+    pub fn is_motion(&self) -> bool {
+        self.kkt.violation <= FEASIBILITY && self.violation <= DENSE
+    }
+}
+
 /// A constraint that takes part in a contradiction.
 #[derive(Clone, Debug)]
 pub struct Conflict {
@@ -57,11 +66,14 @@ const SMOOTHING: f64 = 0.028;
 /// hardly beyond.
 const CAUTION: f64 = 0.05;
 
+/// Joints slower than this, in parts of the fastest joint's rate, may be about to come to rest, where the criterion has kinks.
+const SLOW: f64 = 0.1;
+
 /// Options of the solver for a problem of this kind.
 pub fn options(cycle: &Cycle) -> Options {
     Options {
         tolerance: 1e-6,
-        feasibility: 1e-8,
+        feasibility: FEASIBILITY,
         iteration_limit: 400,
         step_limit: 1.0,
         estimate_multipliers: true,
@@ -112,6 +124,14 @@ impl Task<'_> {
         self.polish(start, f64::INFINITY, observe)
     }
 
+    /// The motion nearest to `start` that keeps to all limits, whatever it costs.
+    pub fn nearest_motion(&self, start: &[f64], observe: Observer) -> Local {
+        let mut cycle = self.cycle();
+        let options = options(&cycle);
+        let found = between_nodes(&mut cycle, start, |cycle, theta, _| reach(cycle, theta, &options, observe));
+        finish(&mut cycle, found.solution, found.violation)
+    }
+
     fn cycle(&self) -> Cycle<'_> {
         Cycle::new(self.gait, self.criterion, self.speed)
     }
@@ -128,9 +148,51 @@ impl Task<'_> {
         Local { iterations: solution.iterations + local.iterations, ..local }
     }
 
-    /// The optimum near `start`, on a mesh that resolves it.
+    /// The optimum near `start`. Where smooth steps lead to none, joints may have to be held still.
     fn polish(&self, start: &[f64], first_step_limit: f64, observe: Observer) -> Local {
+        // What already holds joints still is an optimum of a neighbouring problem, or near one.
+        let mut held = self.slow(start, AT_REST);
+        let mut iterations = 0;
+        if !held.is_empty() {
+            let local = self.solve(start, &held, CAUTION, observe);
+            if matches!(local.status, Status::Optimal | Status::Stopped) {
+                return local;
+            }
+            iterations += local.iterations;
+        }
+        let mut free = self.solve(start, &[], first_step_limit, observe);
+        iterations += free.iterations;
+        let mut theta = free.theta.clone();
+        while !matches!(free.status, Status::Optimal | Status::Stopped) {
+            let slow = self.slow(&theta, SLOW);
+            if slow.is_empty() || slow == held {
+                break;
+            }
+            held = slow;
+            let local = self.solve(&theta, &held, CAUTION, observe);
+            iterations += local.iterations;
+            theta.clone_from(&local.theta);
+            if matches!(local.status, Status::Optimal | Status::Stopped) {
+                free = local;
+            }
+        }
+        Local { iterations, ..free }
+    }
+
+    /// Joints that hardly move, by this share of the fastest one's rate.
+    fn slow(&self, theta: &[f64], share: f64) -> Vec<Still> {
         let mut cycle = self.cycle();
+        if self.criterion == Criterion::Energy && cycle.simulate(theta).is_ok() {
+            cycle.still(share)
+        } else {
+            Vec::new()
+        }
+    }
+
+    /// The optimum near `start` with these joints held still, on a mesh that resolves it.
+    fn solve(&self, start: &[f64], still: &[Still], first_step_limit: f64, observe: Observer) -> Local {
+        let mut cycle = self.cycle();
+        cycle.hold(still);
         let mut found = settle(&mut cycle, start, first_step_limit, observe);
         while found.solution.status.is_optimal()
             && let Some(mut finer) = if found.settled { cycle.finer() } else { cycle.twice_as_fine() }
@@ -171,12 +233,23 @@ fn look(cycle: &mut Cycle, solution: &Solution) -> Result<(f64, f64), Undefined>
 }
 
 /// The optimum near `start`, with constraints imposed between nodes where they dip.
-///
-/// The rows between nodes are known only at a solution, so it is sought again until they no longer change.
 fn settle(cycle: &mut Cycle, start: &[f64], first_step_limit: f64, observe: Observer) -> Settled {
     let options = options(cycle);
-    let first = Options { first_step_limit, ..options.clone() };
-    let mut solution = sqp::minimize(cycle, start, &first, observe);
+    between_nodes(cycle, start, |cycle, theta, round| {
+        let first_step_limit = if round == 0 { first_step_limit } else { f64::INFINITY };
+        sqp::minimize(cycle, theta, &Options { first_step_limit, ..options.clone() }, observe)
+    })
+}
+
+/// What `solve` makes of `start`, again and again with constraints imposed between nodes where they dip.
+///
+/// The rows between nodes are known only at a solution, so it is sought again until they no longer change.
+fn between_nodes(
+    cycle: &mut Cycle,
+    start: &[f64],
+    mut solve: impl FnMut(&mut Cycle, &[f64], usize) -> Solution,
+) -> Settled {
+    let mut solution = solve(cycle, start, 0);
     let mut last: Option<Settled> = None;
     for round in 0.. {
         let Ok((violation, change)) = look(cycle, &solution) else { break };
@@ -192,13 +265,23 @@ fn settle(cycle: &mut Cycle, start: &[f64], first_step_limit: f64, observe: Obse
             last = Some(Settled { solution: solution.clone(), violation, settled });
         }
         let iterations = solution.iterations;
-        solution = sqp::minimize(cycle, &solution.x, &options, observe);
+        solution = solve(cycle, &solution.x, round + 1);
         solution.iterations += iterations;
     }
     Settled { solution, violation: f64::INFINITY, settled: true }
 }
 
-fn finish(cycle: &mut Cycle, solution: Solution, violation: f64) -> Local {
+fn finish(cycle: &mut Cycle, mut solution: Solution, violation: f64) -> Local {
+    if solution.status.is_optimal() && cycle.held().next().is_some() {
+        // An optimum among motions that hold these joints; whether among all, their power decides.
+        cycle.let_go();
+        let scale = cycle.scale();
+        let kkt = multipliers(cycle, &solution.x, scale).map(|m| m.kkt);
+        match kkt {
+            Ok(kkt) if kkt.optimality() <= options(cycle).tolerance => solution.kkt = kkt,
+            _ => solution.status = Status::NoProgress,
+        }
+    }
     // The motion and its labels are those of the last point simulated: make that the solution.
     let defined = cycle.simulate(&solution.x).is_ok();
     let conflicts = if defined { conflicts(cycle, &solution) } else { Vec::new() };

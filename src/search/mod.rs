@@ -5,6 +5,7 @@ pub mod branch;
 pub mod crossover;
 pub mod evidence;
 pub mod fastest;
+mod feasible;
 pub mod guess;
 pub mod journal;
 pub mod local;

@@ -1,6 +1,7 @@
 //! Many starts, all local optima: in parallel, with the same result for any number of threads.
 
 use super::evidence::Effort;
+use super::feasible::motions;
 use super::guess::{Plan, walk};
 use super::local::{Local, Task};
 use crate::cycle::{Cycle, theta};
@@ -46,6 +47,8 @@ pub struct Found {
     pub optima: Vec<Optimum>,
     /// Of the starts without an optimum, the one that came closest: its conflicts explain why.
     pub failure: Option<Local>,
+    /// Without an optimum: the cheapest motion within all limits that is known nevertheless.
+    pub motion: Option<Local>,
     pub effort: Effort,
 }
 
@@ -59,7 +62,7 @@ pub struct Optimum {
 /// Where a start ended.
 struct End {
     local: Local,
-    /// Whether the start was from or near a known optimum.
+    /// Whether the start was from or near a motion that was known.
     informed: bool,
 }
 
@@ -91,7 +94,7 @@ pub fn search_from(
     for first in (0..most).step_by(BATCH) {
         let so_far = collect(criterion, &scale, &ends);
         if settings.starts.is_none() && so_far.effort.is_enough() {
-            return so_far;
+            break;
         }
         let best = so_far.optima.first().filter(|_| first > 0);
         let batch = (first..most.min(first + BATCH)).into_par_iter().map(|k| {
@@ -101,7 +104,20 @@ pub fn search_from(
         });
         ends.par_extend(batch);
     }
-    collect(criterion, &scale, &ends)
+    let found = collect(criterion, &scale, &ends);
+    if !found.optima.is_empty() {
+        return found;
+    }
+    // Descents may fail where there are motions: from these they have no limit to find their way to.
+    let known = motions(&task, settings.seed, found.effort.starts);
+    let thetas: Vec<Vec<f64>> = known.iter().map(|local| local.theta.clone()).collect();
+    ends.par_extend(thetas.par_iter().map(follow));
+    let mut found = collect(criterion, &scale, &ends);
+    if found.optima.is_empty() {
+        let motions = known.into_iter().chain(ends.into_iter().map(|e| e.local)).filter(Local::is_motion);
+        found.motion = motions.min_by(|a, b| a.costs.of(criterion).total_cmp(&b.costs.of(criterion)));
+    }
+    found
 }
 
 /// The k-th start of a seed, and where it leads.
@@ -166,7 +182,7 @@ fn collect(criterion: Criterion, scale: &[f64], ends: &[End]) -> Found {
     let starts = ends.iter().filter(|e| !e.informed).count();
     let successes = optima.iter().map(|o| o.reached).sum();
     let effort = Effort { starts, successes, informed: ends.len() - starts, optima: optima.len() };
-    Found { optima, failure: bad.first().map(|e| e.local.clone()), effort }
+    Found { optima, failure: bad.first().map(|e| e.local.clone()), motion: None, effort }
 }
 
 /// How near two motions of one optimum are, in natural sizes of the variables.

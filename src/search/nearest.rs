@@ -13,16 +13,26 @@ const VIOLATION: f64 = 0.05;
 /// Steps after which the descent has to cope with what is there.
 const LIMIT: usize = 12;
 
-/// Moves `start` towards the constraints of `cycle`.
+/// Moves `start` towards the constraints of `cycle`, roughly.
 pub fn nearest(
     cycle: &mut Cycle,
     start: &[f64],
     options: &Options,
     observe: &mut dyn FnMut(&Iteration) -> Control,
 ) -> Solution {
+    let options = Options { feasibility: VIOLATION, iteration_limit: LIMIT, ..options.clone() };
+    reach(cycle, start, &options, observe)
+}
+
+/// Moves `start` until it satisfies the constraints of `cycle` to the feasibility of `options`.
+pub fn reach(
+    cycle: &mut Cycle,
+    start: &[f64],
+    options: &Options,
+    observe: &mut dyn FnMut(&Iteration) -> Control,
+) -> Solution {
     let weights = cycle.scale().iter().map(|s| 1.0 / (s * s)).collect();
-    let options =
-        Options { tolerance: f64::INFINITY, feasibility: VIOLATION, iteration_limit: LIMIT, ..options.clone() };
+    let options = Options { tolerance: f64::INFINITY, ..options.clone() };
     let distance = Distance { from: start.to_vec(), weights };
     minimize(&mut Redirected::new(cycle, distance), start, &options, observe)
 }

@@ -3,7 +3,8 @@
 //!
 //! Numbers of the robot change the impacts, with them the velocities and the momentum at the beginning of each half step, and β
 //! along it. The end of a half step is part of Θ. A row of L at a dip between nodes is the quartic through the nodes, as in the
-//! program; the dip's motion does not matter (envelope theorem).
+//! program; the dip's motion does not matter (envelope theorem). Joints at rest do not stay so when numbers change: the criterion's
+//! subgradient there is part of L.
 
 use crate::constraints::{ImpactConstraints, Limits, path_constraints_of};
 use crate::cycle::{CLOSURE, Place, renamed};
@@ -152,6 +153,9 @@ impl<'a> Slopes<'a> {
         let last = cycle.last_node(k);
         let mut weights = vec![Vec::new(); last + 1];
         cycle.objective_partials(k).for_each(|(node, quantity, weight)| weights[node].push((quantity, weight)));
+        for ((_, joint, node), multiplier) in cycle.resting().zip(&m.kinks).filter(|((phase, ..), _)| *phase == k) {
+            weights[node].push((Quantities::new(d).rate(joint), -multiplier));
+        }
         let mut rows = vec![Vec::new(); last + 1];
         for (i, multiplier) in self.priced() {
             if let Place::Instant { phase, constraint, .. } = cycle.place(i)

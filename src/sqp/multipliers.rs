@@ -6,6 +6,7 @@
 //! those of inequalities are not negative and pay for every distance from the constraint (the program's dual is that fit).
 //! What is violated counts as met: violations have a residual of their own, and where active constraints nearly depend on each
 //! other, the least of them would ask for a long step.
+//! Where f has kinks, the multipliers of these, up to the kinks' prices, choose among its subgradients.
 
 use super::dense::{axpy, max_abs};
 use super::kkt;
@@ -31,6 +32,8 @@ pub struct Multipliers {
     pub inequalities: Vec<f64>,
     /// ν of the bounds: positive at a lower bound, negative at an upper one.
     pub bounds: Vec<f64>,
+    /// Of the kinks of f: the subgradient is ∇f − Σ multiplier · ∇c.
+    pub kinks: Vec<f64>,
     /// What these multipliers leave of the optimality conditions.
     pub kkt: KktResidual,
     /// The values of all functions.
@@ -53,7 +56,7 @@ pub fn multipliers<P: Problem>(problem: &mut P, x: &[f64], scale: Vec<f64>) -> R
     let size = max_abs(&gradient).max(1.0);
 
     let near: Vec<usize> = (0..view.inequalities).filter(|i| point.values.inequalities[*i] <= NEAR).collect();
-    let mut qp = Quadratic::new(n, equalities + near.len());
+    let mut qp = Quadratic::new(n, equalities + near.len() + view.kinks());
     (0..n).for_each(|j| qp.hessian[j * n + j] = size);
     qp.gradient.copy_from_slice(&gradient);
     let (lower, upper) = view.bounds();
@@ -70,6 +73,10 @@ pub fn multipliers<P: Problem>(problem: &mut P, x: &[f64], scale: Vec<f64>) -> R
         let value = point.values.inequalities[i];
         qp.push(&row, if value <= MET { 0.0 } else { value }, false, LIMIT * size);
     }
+    for i in 0..view.kinks() {
+        let price = view.kink(i, &mut row)?;
+        qp.push(&row, 0.0, true, price);
+    }
     let mut solver = ActiveSet::new(n, qp.len());
     let step = match solver.solve(&qp) {
         Ok(step) => step.clone(),
@@ -81,15 +88,16 @@ pub fn multipliers<P: Problem>(problem: &mut P, x: &[f64], scale: Vec<f64>) -> R
     for (k, &i) in near.iter().enumerate() {
         mu[i] = qp.multiplier(&step, equalities + k);
     }
+    let kinks: Vec<f64> = (equalities + near.len()..qp.len()).map(|i| qp.multiplier(&step, i)).collect();
     let mut left = gradient;
-    for (i, multiplier) in lambda.iter().chain(near.iter().map(|i| &mu[*i])).enumerate() {
+    for (i, multiplier) in lambda.iter().chain(near.iter().map(|i| &mu[*i])).chain(&kinks).enumerate() {
         axpy(-multiplier * qp.norms[i], qp.row(i), &mut left);
     }
     let mut nu = vec![0.0; n];
     kkt::project(&point.z, &lower, &upper, &mut left, &mut nu);
     let kkt = kkt::residual(&view, &point, size, &left, &mu);
     nu.iter_mut().zip(&view.scale).for_each(|(nu, scale)| *nu /= scale);
-    Ok(Multipliers { equalities: lambda, inequalities: mu, bounds: nu, kkt, values: point.values })
+    Ok(Multipliers { equalities: lambda, inequalities: mu, bounds: nu, kinks, kkt, values: point.values })
 }
 
 #[cfg(test)]
@@ -143,6 +151,50 @@ mod tests {
             let [first, second, far] = found.inequalities[..] else { panic!() };
             assert!((first + 2.0 * second - 3.0).abs() < 1e-12 && first >= 0.0 && second >= 0.0 && far == 0.0);
             assert!(found.kkt.stationarity < 1e-12 && found.kkt.complementarity < 1e-12 && found.bounds == [0.0; 2]);
+        }
+    }
+
+    /// Minimize slope·x + y² + |x| + |x + y|/2, kinks left out.
+    struct Kinked(f64);
+
+    impl Problem for Kinked {
+        fn variables(&self) -> usize {
+            2
+        }
+        fn equalities(&self) -> usize {
+            0
+        }
+        fn inequalities(&self) -> usize {
+            0
+        }
+        fn bounds(&self, _: &mut [f64], _: &mut [f64]) {}
+        fn evaluate(&mut self, x: &[f64], out: &mut Values) -> Result<(), Undefined> {
+            out.objective = self.0 * x[0] + x[1] * x[1];
+            Ok(())
+        }
+        fn linearize(&mut self, _: &[f64]) -> Result<(), Undefined> {
+            Ok(())
+        }
+        fn gradient(&self, gradient: &mut [f64]) {
+            gradient.copy_from_slice(&[self.0, 0.0]);
+        }
+        fn equality_row(&self, _: usize, _: &mut [f64]) {}
+        fn inequality_row(&self, _: usize, _: &mut [f64]) {}
+        fn kinks(&self) -> usize {
+            2
+        }
+        fn kink(&self, i: usize, row: &mut [f64]) -> f64 {
+            row.copy_from_slice(&[[1.0, 0.0], [1.0, 1.0]][i]);
+            [1.0, 0.5][i]
+        }
+    }
+
+    #[test]
+    fn at_kinks_some_subgradient_must_vanish() {
+        for (slope, optimal) in [(0.0, true), (0.9, true), (-1.0, true), (1.2, false), (-3.0, false)] {
+            let found = multipliers(&mut Kinked(slope), &[0.0, 0.0], vec![1.0; 2]).unwrap();
+            assert_eq!(found.kkt.stationarity < 1e-12, optimal, "{slope}: {found:?}");
+            assert!(found.kinks[0].abs() <= 1.0 && found.kinks[1].abs() <= 0.5);
         }
     }
 

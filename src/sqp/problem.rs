@@ -61,6 +61,18 @@ pub trait Problem {
         }
     }
 
+    /// How many kinks f has at the linearized point: terms `price · |c(x)|` with c = 0 there, which its gradient leaves out.
+    /// [`multipliers`](super::multipliers) knows of them, [`minimize`](super::minimize) does not.
+    fn kinks(&self) -> usize {
+        0
+    }
+
+    /// Writes ∇c of kink `i` and gives its price.
+    fn kink(&self, i: usize, row: &mut [f64]) -> f64 {
+        let _ = (i, row);
+        0.0
+    }
+
     /// The Hessian of f − λᵀc_E − μᵀc_I at the linearized point, row by row (n·n numbers, of which the lower triangle is
     /// read). Called after `linearize` and before the next `evaluate`. Need not be exact: Gauss-Newton curvature is welcome.
     /// Returning `false`, the default, asks for quasi-Newton approximations from then on.

@@ -167,6 +167,19 @@ impl<'p, P: Problem> Scaled<'p, P> {
         self.finish_row(self.inequality_weights[i], row)
     }
 
+    /// Number of kinks of f.
+    pub(super) fn kinks(&self) -> usize {
+        self.problem.kinks()
+    }
+
+    /// ∇c of a kink, and its price.
+    pub(super) fn kink(&self, i: usize, row: &mut [f64]) -> Result<f64, Undefined> {
+        row.fill(0.0);
+        let price = self.problem.kink(i, row);
+        self.finish_row(1.0, row)?;
+        if price.is_finite() { Ok(price) } else { Err(Undefined) }
+    }
+
     fn finish_row(&self, weight: f64, row: &mut [f64]) -> Result<(), Undefined> {
         for (a, s) in row.iter_mut().zip(&self.scale) {
             *a *= weight * s;

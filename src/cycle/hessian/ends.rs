@@ -3,6 +3,7 @@
 
 use super::Workspace;
 use super::products::congruence;
+use crate::constraints::sharing::pitches;
 use crate::cycle::phase::Phase;
 use crate::cycle::problem::{CLOSURE, pitch};
 use crate::cycle::{Cycle, renamed};
@@ -50,8 +51,8 @@ impl Cycle<'_> {
                 self.impact.partials(c, &b.impact, |i, partial| work.outputs[i] -= multiplier * partial);
             }
         }
-        if let Some(multiplier) = lambda.get(self.speed_equation() + 1 + before) {
-            work.outputs[pitch(d)] -= multiplier / self.units.angular_momentum();
+        if pitches(d) {
+            work.outputs[pitch(d)] -= lambda[self.speed_equation() + 1 + before] / self.units.angular_momentum();
         }
         self.gait.touchdown_curvature(1 - b.leg, &b.q_end, &b.qd_end, &work.xi, &work.outputs, &mut work.touchdown);
         let (q_q, rest) = work.touchdown.split_at(nq * nq);

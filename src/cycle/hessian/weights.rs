@@ -3,7 +3,7 @@
 use super::PhaseWork;
 use crate::cycle::Cycle;
 use crate::cycle::phase::Phase;
-use crate::cycle::problem::CLOSURE;
+use crate::cycle::problem::{CLOSURE, equalities};
 use crate::instant::direction;
 
 impl Cycle<'_> {
@@ -34,6 +34,10 @@ impl Cycle<'_> {
                 });
             }
         });
+        let held = self.holding().zip(&lambda[equalities(self.description())..]);
+        for ((_, joint, node), multiplier) in held.filter(|((phase, ..), _)| *phase == k) {
+            weights[node * count + p.instants.quantities.rate(joint)] -= multiplier / self.units.rate();
+        }
         let speed = lambda[self.speed_equation()];
         work.travel = -speed / self.units.length;
 

@@ -1,0 +1,135 @@
+//! Infeasible is said of motions, never of a criterion; and what is said of speeds holds when they are asked for.
+
+use piaffe::altered::Altered;
+use piaffe::cycle::AT_REST;
+use piaffe::gaits::GAITS;
+use piaffe::model::{Description, Gait};
+use piaffe::motion::Criterion;
+use piaffe::optimality::optimality;
+use piaffe::result::{GaitResult, Status};
+use piaffe::search::atlas::sweep;
+use piaffe::search::fastest::nearest_speed;
+use piaffe::search::journal::Journal;
+use piaffe::search::multi_start::{Settings, search};
+use piaffe::verify::sample;
+use serde_json::Value;
+
+fn named(name: &str) -> &'static dyn Gait {
+    GAITS.iter().copied().find(|g| g.description().key == name).unwrap()
+}
+
+fn altered(name: &str, change: impl FnOnce(&mut Description)) -> Altered<'static> {
+    Altered::new(named(name), change).unwrap()
+}
+
+/// RABBIT with its knees the other way.
+fn bird() -> Altered<'static> {
+    altered("rabbit/walk", |d| {
+        for j in 0..d.joints() {
+            let [lo, hi] = d.joints[j].range;
+            d.joints.to_mut()[j].range = [-hi, -lo];
+        }
+    })
+}
+
+fn optimize(gait: &dyn Gait, criterion: Criterion, speed: f64, settings: &Settings) -> GaitResult {
+    let found = search(gait, criterion, speed, settings, &|_| {});
+    GaitResult::new(gait, criterion, speed, &found, settings.seed, || 0.0)
+}
+
+const FEW: Settings = Settings { starts: Some(8), seed: 1 };
+
+#[test]
+fn whatever_is_minimized_a_bird_walks() {
+    let bird = bird();
+    let mut before = 0.0;
+    // N; what smooth descents had found were 16.952, nothing, 19.073, nothing, nothing, 22.109.
+    for (speed, energy) in
+        [(0.39, 16.38396), (0.40, 16.83274), (0.42, 17.7522), (0.45, 19.1850), (0.48, 20.6538), (0.51, 22.1090)]
+    {
+        let least = Criterion::ALL.map(|criterion| {
+            let result = optimize(&bird, criterion, speed, &FEW);
+            assert_eq!(result.status, Status::Optimal, "{criterion:?} at {speed}: {}", result.message);
+            let again = optimality(&bird, criterion, speed, &result.motion().unwrap()).unwrap();
+            assert!(again.residual() < 1e-6, "{criterion:?} at {speed}: {again:?}");
+            println!("{speed} {criterion:?} {:?}", result.cost);
+            result.cost.unwrap()
+        });
+        assert!(least[0] > before, "{speed}: {} {before}", least[0]);
+        assert!((least[0] / energy - 1.0).abs() < 1e-5, "{speed}: {}", least[0]);
+        before = least[0];
+        if speed == 0.40 {
+            assert!((least[1] - 99.3840).abs() < 1e-3, "{}", least[1]);
+        }
+    }
+}
+
+#[test]
+fn least_energy_holds_a_knee_still() {
+    let (bird, speed) = (bird(), 0.40);
+    let result = optimize(&bird, Criterion::Energy, speed, &FEW);
+    let motion = result.motion().unwrap();
+    let d = bird.description();
+    let knee = (0..d.joints()).find(|j| !d.hangs_on_platform(*j)).unwrap();
+    let fastest = |motion| {
+        let samples = sample(d, motion, 201).unwrap();
+        samples.iter().map(|s| s.qd[knee].abs()).fold(0.0, f64::max)
+    };
+    assert!(fastest(&motion) < AT_REST);
+    // Near by are no better motions, and none that pass for an optimum.
+    let mut moved = motion.clone();
+    moved.half_steps[0].q_interior[0][knee] += 1e-3;
+    assert!(fastest(&moved) > 1e-3);
+    assert!(optimality(&bird, Criterion::Energy, speed, &moved).unwrap().residual() > 1e-3);
+}
+
+#[test]
+fn where_there_are_no_motions_conflicts_are_named() {
+    // Knees that lift no foot by 2 cm.
+    let stiff = altered("rabbit/walk", |d| {
+        for j in 0..d.joints() {
+            if !d.hangs_on_platform(j) {
+                d.joints.to_mut()[j].range = [-0.05, -0.03];
+            }
+        }
+    });
+    for criterion in Criterion::ALL {
+        let result = optimize(&stiff, criterion, 0.6, &FEW);
+        assert_eq!(result.status, Status::Infeasible, "{criterion:?}: {}", result.message);
+        assert!(result.conflicts.iter().any(|c| c.violation > 1e-6), "{:?}", result.conflicts);
+    }
+}
+
+#[test]
+fn the_nearest_speed_works_when_it_is_asked_for() {
+    for (name, criterion, speed) in [("trot", Criterion::Energy, 4.0), ("rabbit/walk", Criterion::Torque, 3.0)] {
+        let gait = named(name);
+        assert_eq!(optimize(gait, criterion, speed, &FEW).status, Status::Infeasible);
+        let nearest = nearest_speed(gait, criterion, speed, &FEW).unwrap();
+        assert!(nearest < speed && nearest > 0.2 * speed, "{name}: {nearest}");
+        // As it is printed.
+        let asked: f64 = nearest.to_string().parse().unwrap();
+        assert!(optimize(gait, criterion, asked, &FEW).is_optimal(), "{name} at {asked}");
+    }
+}
+
+/// Nothing is known, nothing is kept.
+struct Forgetful;
+
+impl Journal for Forgetful {
+    fn known(&self, _: &str) -> Option<Value> {
+        None
+    }
+    fn record(&self, _: &str, _: Value) {}
+    fn point(&self, _: &GaitResult) {}
+    fn visited(&self, _: &dyn Gait, _: bool) {}
+}
+
+#[test]
+fn a_sweep_has_no_holes_between_its_optima() {
+    let (bird, speeds) = (bird(), [0.3, 0.35, 0.4, 0.45, 0.5]);
+    let lines = sweep(&bird, &Criterion::ALL, &speeds, &Settings { starts: Some(1), seed: 1 }, &Forgetful);
+    for result in lines.iter().flatten() {
+        assert!(result.is_optimal(), "{:?} at {}: {}", result.criterion, result.speed, result.message);
+    }
+}
