@@ -41,7 +41,7 @@ impl<'a> Altered<'a> {
 fn folded(d: &Description) -> String {
     let rotors: Vec<f64> = d.joints.iter().map(|j| j.gear * j.gear * j.rotor_inertia).collect();
     let frame = (d.gravity, d.lateral, d.rotation, d.half_steps, d.unactuated, d.early);
-    format!("{frame:?} {:?} {:?} {rotors:?}", d.bodies, d.legs)
+    format!("{frame:?} {:?} {:?} {:?} {rotors:?}", d.bodies, d.legs, d.corners)
 }
 
 macro_rules! delegate {
@@ -89,6 +89,7 @@ impl Gait for Altered<'_> {
         momentum(leg: usize, q: &[f64], qd: &[f64]);
         inverse_jacobian(leg: usize, q: &[f64], qd: &[f64], actuated_dd: &[f64]);
         placement(leg: usize, q: &[f64]);
+        heights(leg: usize, q: &[f64]);
         swing_velocity(leg: usize, q: &[f64], qd: &[f64]);
         early(leg: usize, actuated: &[f64], actuated_d: &[f64]);
         late(leg: usize, early: &[f64], beta: f64);
@@ -96,6 +97,7 @@ impl Gait for Altered<'_> {
         impact(leg: usize, q: &[f64], xd: &[f64]);
         touchdown(leg: usize, q: &[f64], qd: &[f64]);
         curvature(leg: usize, q: &[f64], qd: &[f64], qdd: &[f64], n: &[f64], phi: &[f64], others: &[f64]);
+        heights_curvature(leg: usize, q: &[f64], weights: &[f64]);
         touchdown_curvature(leg: usize, q: &[f64], qd: &[f64], xi: &[f64], outputs: &[f64]);
         sharing(leg: usize, q: &[f64], qd: &[f64], qdd: &[f64]);
         sharing_curvature(leg: usize, q: &[f64], qd: &[f64], qdd: &[f64], weights: &[f64]);

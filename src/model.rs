@@ -28,6 +28,8 @@ pub struct Description {
     pub half_steps: HalfSteps,
     /// Parents precede children; body 0 is the platform.
     pub bodies: Cow<'static, [Body]>,
+    /// Of what the platform fills.
+    pub corners: Cow<'static, [Spot]>,
     pub joints: Cow<'static, [Joint]>,
     pub legs: [Leg; 2],
     /// Index of β in q.
@@ -36,6 +38,10 @@ pub struct Description {
     pub polynomial_order: usize,
     /// Length of the early values of each stance leg.
     pub early: [usize; 2],
+    /// What must stay above the ground.
+    pub points: &'static [Point],
+    /// Which of these can be the lowest: whose heights [`Gait::heights`] gives.
+    pub lowest: &'static [usize],
     pub limits: Limits,
     /// What each generated kernel costs.
     pub operations: &'static [Operations],
@@ -113,6 +119,49 @@ pub struct Member {
     pub joints: Cow<'static, [&'static str]>,
     /// Foot from the joint of the last link, m.
     pub foot: [f64; 3],
+    /// Its joints, also those that the gait holds still.
+    pub spots: Cow<'static, [Spot]>,
+}
+
+/// A point of a body.
+#[derive(Clone, Copy, Debug)]
+pub struct Spot {
+    /// 0: the platform; k: the k-th link of its leg.
+    pub body: usize,
+    /// In the axes of the body, from its joint (from the mass centre for the platform), m.
+    pub at: [f64; 3],
+}
+
+/// A spot as a part of the gait: what moves it. Where half steps mirror each other a leg also takes the part of its
+/// counterpart, and where the platform rolls it does so as its own mirror image.
+#[derive(Clone, Copy, Debug)]
+pub struct Point {
+    /// As reports show it.
+    pub name: &'static str,
+    /// The real leg whose spot it is, as (virtual leg, member); `None`: one of the platform's corners.
+    pub of: Option<(usize, usize)>,
+    /// Which of its spots.
+    pub spot: usize,
+    /// The virtual leg with which it moves; of no matter for the platform's.
+    pub leg: usize,
+    /// As a mirror shows it that exchanges left and right.
+    pub mirrored: bool,
+}
+
+impl Point {
+    /// How many links lead to it.
+    pub fn links(&self, d: &Description) -> usize {
+        match self.of {
+            Some((leg, member)) => d.legs[leg].members[member].spots[self.spot].body,
+            None => d.corners[self.spot].body,
+        }
+    }
+
+    /// The body that moves like its k-th link, the platform before the first.
+    pub fn body(&self, d: &Description, k: usize) -> usize {
+        let leg = &d.legs[self.leg];
+        if k == 0 { 0 } else { leg.foot_body + k - (leg.end_joint - leg.first_joint) }
+    }
 }
 
 impl Member {
@@ -134,6 +183,8 @@ pub struct Limits {
     pub half_step_duration: [f64; 2],
     /// Of the platform's mass centre above the ground, m.
     pub min_platform_height: f64,
+    /// Of everything but feet above the ground, m.
+    pub body_clearance: f64,
     /// Whether contact, torques and speeds must also hold at each real leg (see `constraints::sharing`), not only at the
     /// virtual legs.
     pub real_legs: bool,
@@ -308,6 +359,8 @@ pub trait Gait: Sync {
     fn inverse_jacobian(&self, leg: usize, q: &[f64], qd: &[f64], actuated_dd: &[f64], out: &mut [f64]);
     /// p, swing foot, ∂p/∂q, ∂swing/∂q; from the stance foot.
     fn placement(&self, leg: usize, q: &[f64], out: &mut [f64]);
+    /// Heights over the ground of the description's `lowest` points, ∂/∂q.
+    fn heights(&self, leg: usize, q: &[f64], out: &mut [f64]);
     /// Swing foot's velocity, its Jacobian in (q, q̇).
     fn swing_velocity(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]);
 
@@ -336,6 +389,8 @@ pub trait Gait: Sync {
         others: &[f64],
         out: &mut [f64],
     );
+    /// Gradient in q and second derivatives (q·q) of the weighted sum of [`Gait::heights`].
+    fn heights_curvature(&self, leg: usize, q: &[f64], weights: &[f64], out: &mut [f64]);
     /// Second derivatives (q·q, q·q̇⁻, q·q̇⁺) of a touchdown's weighted results.
     fn touchdown_curvature(&self, leg: usize, q: &[f64], qd: &[f64], xi: &[f64], outputs: &[f64], out: &mut [f64]);
     /// Where the platform rolls: moment (y, z) about the stance foot, ∂foot/∂q of its leg, ∂(these)/∂(q, q̇, q̈). Elsewhere

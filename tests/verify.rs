@@ -4,6 +4,8 @@
 mod derivatives;
 #[path = "verify/dynamics.rs"]
 mod dynamics;
+#[path = "verify/heights.rs"]
+mod heights;
 #[path = "verify/motions.rs"]
 mod motions;
 #[path = "verify/numerics.rs"]

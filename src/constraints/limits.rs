@@ -12,6 +12,7 @@ pub struct Limits<T = f64> {
     pub swing_clearance: T,
     pub half_step_duration: [T; 2],
     pub min_platform_height: T,
+    pub body_clearance: T,
 }
 
 /// Those of a joint.
@@ -53,6 +54,7 @@ impl<T: Scalar> Limits<T> {
             swing_clearance: one(&|d| d.limits.swing_clearance),
             half_step_duration: [0, 1].map(|end| one(&|d| d.limits.half_step_duration[end])),
             min_platform_height: one(&|d| d.limits.min_platform_height),
+            body_clearance: one(&|d| d.limits.body_clearance),
         }
     }
 }

@@ -55,7 +55,7 @@ pub fn path_constraints_of<T: Scalar>(description: &Description, limits: &Limits
     let mut list = actuator::constraints(description, limits, &y);
     list.extend(reaction::constraints(description, limits, &y));
     list.push(swing::constraint(description, limits, &y));
-    list.push(ground::constraint(description, limits, &y));
+    list.extend(ground::constraints(description, limits, &y));
     list.extend(range::constraints(description, limits, &y));
     list.extend(sharing::constraints(description, limits, &y));
     list

@@ -1,7 +1,7 @@
 //! A look at an instant between the nodes.
 
 use super::Quantities;
-use super::quantities::{placement_length, sharing_length};
+use super::quantities::{heights_length, placement_length, sharing_length};
 use crate::model::{Description, Gait};
 use crate::stance::{Mesh, Stance, State, Undefined};
 
@@ -15,6 +15,7 @@ pub struct Glance {
     pub values: Vec<f64>,
     inverse: Vec<f64>,
     placement: Vec<f64>,
+    heights: Vec<f64>,
     sharing: Vec<f64>,
 }
 
@@ -31,6 +32,7 @@ impl Glance {
             values: z(quantities.len()),
             inverse: z(nq + nj + 2 * nc),
             placement: z(placement_length(nq, nc)),
+            heights: z(heights_length(nq, quantities.heights().len())),
             sharing: z(sharing_length(nq, quantities.shared)),
         }
     }
@@ -58,6 +60,8 @@ impl Glance {
         gait.placement(leg, q, &mut self.placement);
         y.write(&mut self.values, q, qd, forces, self.placement[1]);
         self.values[y.clearance()] = self.placement[nc + 1] / (4.0 * s * (1.0 - s));
+        gait.heights(leg, q, &mut self.heights);
+        self.values[y.heights()].copy_from_slice(&self.heights[..y.heights().len()]);
         if y.shared > 0 {
             gait.sharing(leg, q, qd, &self.qdd, &mut self.sharing);
             self.values[y.shared()].copy_from_slice(&self.sharing[..y.shared]);

@@ -1,7 +1,7 @@
 //! Everything that constraints and criteria look at, at each instant of a half step.
 //!
 //! The *quantities* of an instant are the torques of all joints, the reaction, the joints' angles and
-//! rates, the swing foot's clearance and the platform's height; each with its gradient in the half step's parameters.
+//! rates, the swing foot's clearance, the platform's height and that of all that can be lowest; each with its gradient in the half step's parameters.
 
 mod chain;
 mod glance;
@@ -13,7 +13,7 @@ pub use quantities::{Quantities, Shared, direction};
 use crate::model::{Description, Gait};
 use crate::stance::{Layout, Mesh, Stance, basis_derivatives};
 use chain::{Chain, parts};
-use quantities::{inverse_length, placement_length, sharing_length};
+use quantities::{heights_length, inverse_length, placement_length, sharing_length};
 
 /// The quantities at all nodes of a half step: values, and derivatives of the last linearization.
 #[derive(Clone, Debug)]
@@ -28,6 +28,8 @@ pub struct Instants {
     inverse: Vec<f64>,
     placement: Vec<f64>,
     swing: [Vec<f64>; 2],
+    /// Results of the `heights` kernel, a row per node.
+    heights: Vec<f64>,
     /// Results of the `sharing` kernel, a row per node; none if nothing shared is looked at.
     sharing: Vec<f64>,
     /// Per node and quantity a row of derivatives in the local parameters.
@@ -52,6 +54,7 @@ impl Instants {
             inverse: vec![0.0; n * inverse_length(nq, nj, nc)],
             placement: vec![0.0; n * placement_length(nq, nc)],
             swing: [vec![0.0; nc + nc * 2 * nq], vec![0.0; nc + nc * 2 * nq]],
+            heights: vec![0.0; n * heights_length(nq, quantities.heights().len())],
             sharing: vec![0.0; n * sharing_length(nq, quantities.shared)],
             gradients: vec![0.0; n * quantities.len() * layout.len()],
             betadd_p: vec![0.0; n * layout.len()],
@@ -108,6 +111,13 @@ impl Instants {
         &self.inverse[node * inverse_length(nq, nj, nc)..][1 + nj + nc..][..(nj + nc + 1) * 3 * nq]
     }
 
+    /// Jacobian of the `heights` kernel at a node: a row per point; columns q.
+    fn heights(&self, d: &Description, node: usize) -> &[f64] {
+        let points = self.quantities.heights().len();
+        let length = heights_length(d.orientations(), points);
+        &self.heights[node * length..][..length][points..]
+    }
+
     /// Jacobian of the `sharing` kernel at a node: rows moment, levers; columns q, q̇, q̈. Empty if nothing shared is looked at.
     pub fn sharing(&self, d: &Description, node: usize) -> &[f64] {
         let length = sharing_length(d.orientations(), self.quantities.shared);
@@ -151,6 +161,10 @@ impl Instants {
             } else {
                 placement[nc + 1] / (4.0 * s * (1.0 - s))
             };
+            let length = heights_length(nq, y.heights().len());
+            let heights = &mut self.heights[k * length..][..length];
+            gait.heights(leg, q, heights);
+            values[y.heights()].copy_from_slice(&heights[..y.heights().len()]);
             if y.shared > 0 {
                 let length = sharing_length(nq, y.shared);
                 let sharing = &mut self.sharing[k * length..][..length];
@@ -192,6 +206,10 @@ impl Instants {
             }
             let row = &self.placement(d, k)[2 * nc + nq..][..nq];
             chain.row([row, &[], &[]], None, &mut block[y.height() * np..][..np]);
+            let heights = block[y.heights().start * np..y.heights().end * np].chunks_mut(np);
+            for (row, out) in self.heights(d, k).chunks(nq).zip(heights) {
+                chain.row([row, &[], &[]], None, out);
+            }
             for (r, out) in block[y.shared().start * np..].chunks_mut(np).enumerate() {
                 chain.row(parts(self.sharing(d, k), r, nq), Some(betadd_p), out);
             }

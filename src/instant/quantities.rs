@@ -8,13 +8,19 @@ use crate::model::Description;
 pub struct Quantities {
     joints: usize,
     components: usize,
+    points: usize,
     pub(super) shared: usize,
 }
 
 impl Quantities {
     pub fn new(description: &Description) -> Quantities {
         let shared = if sharing::applies(description) { Shared::new(description).len() } else { 0 };
-        Quantities { joints: description.joints(), components: description.positions(), shared }
+        Quantities {
+            joints: description.joints(),
+            components: description.positions(),
+            points: description.lowest.len(),
+            shared,
+        }
     }
 
     /// Γj, N·m.
@@ -48,9 +54,14 @@ impl Quantities {
         self.clearance() + 1
     }
 
+    /// Heights over the ground of the description's `lowest` points, m.
+    pub fn heights(&self) -> std::ops::Range<usize> {
+        self.height() + 1..self.height() + 1 + self.points
+    }
+
     /// What decides how the real legs share the load, if their limits count: see [`Shared`].
     pub fn shared(&self) -> std::ops::Range<usize> {
-        self.height() + 1..self.height() + 1 + self.shared
+        self.heights().end..self.heights().end + self.shared
     }
 
     /// Writes what follows from the state itself, and torques and reaction.
@@ -113,6 +124,11 @@ pub(super) fn inverse_length(nq: usize, nj: usize, nc: usize) -> usize {
 
 pub(super) fn sharing_length(nq: usize, shared: usize) -> usize {
     shared + shared * 3 * nq
+}
+
+/// Of the kernel `heights` for so many points.
+pub(super) fn heights_length(nq: usize, points: usize) -> usize {
+    points + points * nq
 }
 
 pub(super) fn placement_length(nq: usize, nc: usize) -> usize {

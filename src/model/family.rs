@@ -137,7 +137,7 @@ pub fn member<M: Parametric + 'static>(parameters: &[f64]) -> Result<Box<dyn Par
 
 /// For generated members: what a member is made of, and its parameters, checked. `numbers` computes the
 /// mechanism's numbers: gravity; of each body offset, mass, mass centre and inertia; of each joint the
-/// rotor's inertia; of each leg the foot, and of its members their bodies and feet.
+/// rotor's inertia; of each leg the foot, and of its members their bodies, feet and spots; corners.
 ///
 /// # Errors
 /// If no robot has these parameters.

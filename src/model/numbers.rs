@@ -21,9 +21,9 @@ pub struct Lever {
 
 impl Description {
     /// All numbers: first what is measured (gravity; of each body offset, mass, mass centre and inertia; of each joint the
-    /// rotor's inertia; of each leg the foot, and of its members their bodies and feet), then what limits (of each joint
-    /// its range, greatest torque, unloaded and loaded speed; friction, vertical force, clearance, shortest and longest
-    /// half step, platform height).
+    /// rotor's inertia; of each leg the foot, and of its members their bodies, feet and spots; the platform's corners), then
+    /// what limits (of each joint its range, greatest torque, unloaded and loaded speed; friction, vertical force, clearance,
+    /// shortest and longest half step, platform height, body clearance).
     pub fn numbers(&self) -> Vec<f64> {
         let mut numbers = Vec::new();
         self.clone().for_each_number(&mut |number| numbers.push(*number));
@@ -54,6 +54,7 @@ impl Description {
         visit(&mut l.swing_clearance);
         l.half_step_duration.iter_mut().for_each(&mut *visit);
         visit(&mut l.min_platform_height);
+        visit(&mut l.body_clearance);
     }
 
     /// Visits the measured numbers in their order.
@@ -66,15 +67,14 @@ impl Description {
             for member in leg.members.to_mut() {
                 member.bodies.to_mut().iter_mut().for_each(|body| body.for_each_measured(visit));
                 member.foot.iter_mut().for_each(&mut *visit);
+                member.spots.to_mut().iter_mut().flat_map(|spot| &mut spot.at).for_each(&mut *visit);
             }
         }
+        self.corners.to_mut().iter_mut().flat_map(|corner| &mut corner.at).for_each(visit);
     }
 }
 
 impl Body {
-    /// How many numbers are measured of a body.
-    pub const MEASURED: usize = 3 + 1 + 3 + 9;
-
     fn for_each_measured(&mut self, visit: &mut impl FnMut(&mut f64)) {
         self.offset.iter_mut().for_each(&mut *visit);
         visit(&mut self.mass);

@@ -26,6 +26,7 @@ pub fn meaning(constraint: &str) -> String {
         }
         ("leaving foot", _) => "The foot that leaves the ground leaves it without speed.".into(),
         ("platform height", _) => "The platform’s mass centre is as low as is allowed.".into(),
+        ("height", point) => format!("{point} is as near to the ground as is allowed."),
         _ => UNKNOWN.into(),
     }
 }
@@ -48,7 +49,7 @@ mod tests {
     fn every_limit_has_words_of_its_own() {
         for gait in GAITS {
             let d = gait.description();
-            let inequalities = Constraint::all(d.joints()).filter(|c| !c.is_equality());
+            let inequalities = Constraint::all(d).filter(|c| !c.is_equality());
             let mut names: Vec<String> = inequalities.map(|c| c.name(d)).collect();
             let altered = Altered::at_real_legs(*gait);
             let mut optimized = |gait: &dyn Gait| {

@@ -209,6 +209,9 @@ fn quantities(d: &Description, state: &State<Number>, share: f64, duration: f64)
     values[y.angle(0)..][..joints].copy_from_slice(&state.q[..joints]);
     values[y.rate(0)..][..joints].copy_from_slice(&state.qd[..joints]);
     values[y.height()] = state.platform.y;
+    for (value, point) in values[y.heights()].iter_mut().zip(d.lowest) {
+        *value = state.heights[*point];
+    }
     values[y.clearance()] = if share <= 0.0 || share >= 1.0 {
         state.swing_velocity.y.scale(direction(usize::from(share >= 1.0)) * duration)
     } else {

@@ -30,6 +30,8 @@ pub enum Constraint {
     Clearance,
     /// Platform's mass centre above the ground by its minimum.
     PlatformHeight,
+    /// A joint or a corner of the platform above the ground by the body's clearance.
+    Height(usize),
     /// Swing foot on the ground at the end; equality.
     Touchdown,
     /// T ≥ its minimum.
@@ -47,10 +49,10 @@ pub enum Constraint {
 }
 
 impl Constraint {
-    /// All constraints of a gait with `joints` joints, in the order of their slots.
-    pub fn all(joints: usize) -> impl Iterator<Item = Constraint> {
+    /// All constraints of a gait, in the order of their slots.
+    pub fn all(description: &Description) -> impl Iterator<Item = Constraint> {
         use Constraint::*;
-        let of_joints = (0..joints).flat_map(|j| [Torque(j), Speed(j), LowerStop(j), UpperStop(j)]);
+        let of_joints = (0..description.joints()).flat_map(|j| [Torque(j), Speed(j), LowerStop(j), UpperStop(j)]);
         let others = [
             VerticalForce,
             Friction,
@@ -64,7 +66,7 @@ impl Constraint {
             MeanSpeed,
             PlatformHeight,
         ];
-        of_joints.chain(others)
+        of_joints.chain(others).chain((0..description.points.len()).map(Height))
     }
 
     /// An equality can only be met exactly: it is never reported as active.
@@ -91,6 +93,9 @@ impl Constraint {
             Constraint::Leaving => "leaving foot".into(),
             Constraint::MeanSpeed => "mean speed".into(),
             Constraint::PlatformHeight => "platform height".into(),
+            Constraint::Height(point) => {
+                format!("height of {}", description.points.get(point).map_or("?", |point| point.name))
+            }
         }
     }
 }
@@ -106,9 +111,9 @@ pub struct Tally {
 
 impl Tally {
     /// For half step `half_step`, 1-based.
-    pub fn new(joints: usize, half_step: usize) -> Tally {
-        let entries = Constraint::all(joints).map(|c| (c, f64::INFINITY, 0.0)).collect();
-        Tally { half_step, joints, entries }
+    pub fn new(description: &Description, half_step: usize) -> Tally {
+        let entries = Constraint::all(description).map(|c| (c, f64::INFINITY, 0.0)).collect();
+        Tally { half_step, joints: description.joints(), entries }
     }
 
     /// Notes the margin of a constraint at a time; a margin that is not a number counts as violated.
@@ -135,6 +140,7 @@ impl Tally {
             Constraint::Leaving => joints + 8,
             Constraint::MeanSpeed => joints + 9,
             Constraint::PlatformHeight => joints + 10,
+            Constraint::Height(point) => joints + 11 + point,
         };
         let Some((_, least, at)) = self.entries.get_mut(slot) else { return };
         for (margin, time) in margins.iter().zip(times) {

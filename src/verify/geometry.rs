@@ -50,6 +50,8 @@ pub trait Geometry<T: Scalar>: Copy + Debug {
     fn axis(axes: &Self::Axes, k: usize) -> Self::Spin;
     /// From the body's axes to the world's.
     fn in_world(axes: &Self::Axes, v: Self::Vector) -> Self::Vector;
+    /// The part straight up of a vector in the body's axes.
+    fn rise(axes: &Self::Axes, v: &Vec3<T>) -> T;
 
     /// ω × r: the velocity of the tip of an arm.
     fn swirl(spin: Self::Spin, arm: Self::Vector) -> Self::Vector;
@@ -124,6 +126,10 @@ impl<T: Scalar> Geometry<T> for Space {
     #[inline]
     fn in_world(axes: &[Vec3<T>; 3], v: Vec3<T>) -> Vec3<T> {
         axes[0] * v.x + axes[1] * v.y + axes[2] * v.z
+    }
+
+    fn rise(axes: &[Vec3<T>; 3], v: &Vec3<T>) -> T {
+        axes[0].y * v.x + axes[1].y * v.y + axes[2].y * v.z
     }
 
     fn swirl(spin: Vec3<T>, arm: Vec3<T>) -> Vec3<T> {
@@ -210,6 +216,10 @@ impl<T: Scalar> Geometry<T> for Plane {
 
     fn in_world(axes: &Vector2<T>, v: Vector2<T>) -> Vector2<T> {
         *axes * v.x + quarter_turn(*axes) * v.y
+    }
+
+    fn rise(axes: &Vector2<T>, v: &Vec3<T>) -> T {
+        axes.y * v.x + axes.x * v.y
     }
 
     fn swirl(spin: T, arm: Vector2<T>) -> Vector2<T> {

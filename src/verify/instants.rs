@@ -48,6 +48,8 @@ pub struct State<T = f64> {
     /// The swing foot, m.
     pub swing: Vec3<T>,
     pub swing_velocity: Vec3<T>,
+    /// Of the description's points over the ground, m.
+    pub heights: Vec<T>,
 }
 
 impl<T: Scalar> State<T> {
@@ -63,6 +65,7 @@ impl<T: Scalar> State<T> {
             platform: zero,
             swing: zero,
             swing_velocity: zero,
+            heights: vec![T::zero(); description.points.len()],
         }
     }
 }

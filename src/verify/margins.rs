@@ -2,6 +2,7 @@
 
 use super::constraint::Constraint;
 use super::geometry::Vec3;
+use super::heights::alike;
 use super::instants::State;
 use super::numbers::Numbers;
 use super::support::leg_length;
@@ -12,7 +13,7 @@ use crate::number::Scalar;
 const SLOW: f64 = 0.2;
 
 /// The natural units of margins; see [`constraint`](super::constraint).
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Units {
     /// Of masses: the robot's, kg.
     pub mass: f64,
@@ -26,13 +27,17 @@ pub struct Units {
     pub speed: f64,
     /// Of impulses: the robot's momentum at that velocity, N·s.
     pub momentum: f64,
+    /// The description's points, but for those that are as high as one before.
+    points: Vec<usize>,
 }
 
 impl Units {
     pub fn new(description: &Description) -> Units {
         let (mass, leg, gravity) = (description.total_mass(), leg_length(description), description.gravity);
         let speed = (gravity * leg).sqrt();
-        Units { mass, weight: mass * gravity, leg, time: (leg / gravity).sqrt(), speed, momentum: mass * speed }
+        let own = alike(description).into_iter().enumerate().filter(|(k, first)| k == first);
+        let points = own.map(|(k, _)| k).collect();
+        Units { mass, weight: mass * gravity, leg, time: (leg / gravity).sqrt(), speed, momentum: mass * speed, points }
     }
 
     /// A slow rate of an angle, rad/s: rates are judged relative to themselves where they are faster, else relative to this.
@@ -66,7 +71,11 @@ impl Units {
         let weight = T::from(self.weight);
         note(Constraint::VerticalForce, (state.force.y - numbers.min_vertical_force) / weight);
         note(Constraint::Friction, (numbers.friction * state.force.y - tangential(&state.force)) / weight);
-        note(Constraint::PlatformHeight, (state.platform.y - numbers.min_platform_height) / T::from(self.leg));
+        let leg = T::from(self.leg);
+        note(Constraint::PlatformHeight, (state.platform.y - numbers.min_platform_height) / leg);
+        for k in &self.points {
+            note(Constraint::Height(*k), (state.heights[*k] - numbers.body_clearance) / leg);
+        }
     }
 
     /// Margins of an impact.

@@ -23,6 +23,7 @@ pub mod cycle;
 mod error;
 pub mod geometry;
 mod grid;
+pub mod heights;
 pub mod impact;
 pub mod instants;
 pub mod integrate;

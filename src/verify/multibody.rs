@@ -142,6 +142,11 @@ impl<'a, T: Scalar, G: Geometry<T>> Multibody<'a, T, G> {
         &self.coms[body]
     }
 
+    /// The part straight up of an arm in the axes of a body.
+    pub fn rise(&self, body: usize, arm: &Vec3<T>) -> T {
+        G::rise(&self.frames[body].axes, arm)
+    }
+
     /// Angular velocity of a body, rad/s.
     pub fn spin(&self, body: usize) -> G::Spin {
         self.frames[body].spin

@@ -2,7 +2,7 @@
 //! about which axis) stays in the description.
 
 use super::geometry::Vec3;
-use crate::model::{Body, Description, Member};
+use crate::model::{Description, Member};
 use crate::number::Scalar;
 
 /// Masses, lengths and limits of a [`Description`], in its units and order.
@@ -12,12 +12,25 @@ pub struct Numbers<T = f64> {
     pub bodies: Vec<Rigid<T>>,
     /// Foot of each leg from the joint of its body, m.
     pub feet: [Vec3<T>; 2],
+    /// The real legs of each.
+    pub members: [Vec<RealLeg<T>>; 2],
+    /// Of the platform, from its mass centre, m.
+    pub corners: Vec<Vec3<T>>,
     pub joints: Vec<Actuator<T>>,
     pub friction: T,
     pub min_vertical_force: T,
     pub swing_clearance: T,
     pub half_step_duration: [T; 2],
     pub min_platform_height: T,
+    pub body_clearance: T,
+}
+
+/// See [`Member`]; m.
+#[derive(Clone, Debug)]
+pub struct RealLeg<T> {
+    /// Joint of each link on the one before.
+    pub offsets: Vec<Vec3<T>>,
+    pub spots: Vec<Vec3<T>>,
 }
 
 /// See [`Body`].
@@ -53,15 +66,13 @@ impl<T: Scalar> Numbers<T> {
         let gravity = one();
         let bodies = description.bodies.iter().map(|_| rigid(&mut one)).collect();
         let rotors: Vec<T> = description.joints.iter().map(|_| one()).collect();
+        let mut members = [Vec::new(), Vec::new()];
         let feet = [0, 1].map(|leg| {
             let foot = vector(&mut one);
-            // The numbers of its members are for others.
-            let of_member = |member: &Member| Body::MEASURED * member.bodies.len() + 3;
-            (0..description.legs[leg].members.iter().map(of_member).sum()).for_each(|_| {
-                one();
-            });
+            members[leg].extend(description.legs[leg].members.iter().map(|member| real_leg(member, &mut one)));
             foot
         });
+        let corners = description.corners.iter().map(|_| vector(&mut one)).collect();
         let joints = rotors.into_iter().map(|rotor_inertia| Actuator {
             range: [one(), one()],
             max_torque: one(),
@@ -74,14 +85,24 @@ impl<T: Scalar> Numbers<T> {
             gravity,
             bodies,
             feet,
+            members,
+            corners,
             joints,
             friction: one(),
             min_vertical_force: one(),
             swing_clearance: one(),
             half_step_duration: [one(), one()],
             min_platform_height: one(),
+            body_clearance: one(),
         }
     }
+}
+
+/// What its links weigh is part of the virtual leg: it is only asked where its joints and other spots are.
+fn real_leg<T: Scalar>(member: &Member, one: &mut impl FnMut() -> T) -> RealLeg<T> {
+    let offsets = member.bodies.iter().map(|_| rigid(one).offset).collect();
+    vector(one);
+    RealLeg { offsets, spots: member.spots.iter().map(|_| vector(one)).collect() }
 }
 
 fn rigid<T: Scalar>(one: &mut impl FnMut() -> T) -> Rigid<T> {

@@ -80,7 +80,7 @@ pub fn verify(description: &Description, motion: &Motion, speed: f64, grid: usiz
     let mut tallies = Vec::new();
     let mut totals: Vec<Totals> = Vec::new();
     for (i, half_step) in motion.half_steps.iter().enumerate() {
-        let mut tally = Tally::new(description.joints(), i + 1);
+        let mut tally = Tally::new(description, i + 1);
         let mut phase = Phase::new(description, half_step, stance_leg(description, i), i + 1)?;
         totals.push(evaluate(&mut phase, half_step, grid, &mut tally)?);
         let at_impact = |constraint, margin| tally.note(constraint, margin, half_step.duration);

@@ -12,6 +12,7 @@
 //! F = Σ f, and the torque of a joint is the moment about its axis of all it carries (eq. 5).
 
 use super::geometry::{Geometry, Space, Vec3};
+use super::heights::{Arms, alike};
 use super::instants::State;
 use super::multibody::Multibody;
 use super::numbers::Numbers;
@@ -32,6 +33,8 @@ pub struct Support<'a, T: Scalar = f64, G: Geometry<T> = Space> {
     loads: Vec<Load<G::Vector, G::Spin>>,
     /// Force and moment about the platform's mass centre of each body with all that it carries.
     carried: Vec<(G::Vector, G::Spin)>,
+    /// What must stay above the ground: where it is, or which point before is at the same height.
+    points: Vec<Result<Arms<T>, usize>>,
     smallest_f1: f64,
 }
 
@@ -56,7 +59,13 @@ impl<'a, T: Scalar, G: Geometry<T>> Support<'a, T, G> {
         let (zero, still) = (G::Vector::zero(), G::Spin::zero());
         let load = Load { force: zero, moment: still, force_per_beta: zero, moment_per_beta: still };
         let length = leg_length(description);
+        let alike = alike(description).into_iter().enumerate();
+        let point = |(k, first)| {
+            if first < k { Err(first) } else { Ok(Arms::new(description, &numbers, &description.points[k])) }
+        };
+        let points = alike.map(point).collect();
         Support {
+            points,
             multibody: Multibody::with(description, numbers),
             leg,
             axis: if description.rotation == Rotation::Roll { 0 } else { 2 },
@@ -145,6 +154,12 @@ impl<'a, T: Scalar, G: Geometry<T>> Support<'a, T, G> {
         state.platform = seen(-stance.position);
         state.swing = seen(swing.position - stance.position);
         state.swing_velocity = G::in_space(swing.velocity - stance.velocity);
+        for (k, point) in self.points.iter().enumerate() {
+            state.heights[k] = match point {
+                Ok(arms) => state.platform.y + arms.rise(&self.multibody),
+                Err(first) => state.heights[*first],
+            };
+        }
     }
 }
 

@@ -39,7 +39,7 @@ fn optima_are_certified() {
 fn tallies(d: &Description, motion: &Motion, points: usize) -> Vec<Tally> {
     let mut state = State::new(d);
     let one = |(i, h)| {
-        let mut tally = Tally::new(d.joints(), i + 1);
+        let mut tally = Tally::new(d, i + 1);
         let mut phase = Phase::new(d, h, stance_leg(d, i), i + 1).unwrap();
         for k in 0..points {
             let t = phase.duration * k as f64 / (points - 1) as f64;
@@ -54,7 +54,7 @@ fn tallies(d: &Description, motion: &Motion, points: usize) -> Vec<Tally> {
 /// No margin that is found anywhere is below what was proven.
 fn bounds_hold(d: &Description, motion: &Motion, certificate: &Certificate) {
     for (i, tally) in tallies(d, motion, 501).iter().enumerate() {
-        for constraint in Constraint::all(d.joints()).filter(|c| tally.margin(*c).is_finite()) {
+        for constraint in Constraint::all(d).filter(|c| tally.margin(*c).is_finite()) {
             let (name, found) = (constraint.name(d), tally.margin(constraint));
             let bound = certificate.bounds.iter().find(|b| b.half_step == i + 1 && b.constraint == name).unwrap();
             // The samples come from an integration that is off by 1e-11 or so.

@@ -2,11 +2,12 @@
 //!
 //! `floating` holds the model in X = [p, q] (eq. 5), `stance` the one reduced to q by the stance foot
 //! (eq. 6, 10), `turn` its angular momentum (eq. 8, 9), `impact` the passive impacts (eq. 11, 12), `staging` what of
-//! eq. 8 and 9 can be evaluated before β is known; `whole` is the real robot, which has no gait. All follow Kane's form `Σ m ∂v/∂Ẋ·a + ∂ω/∂Ẋ·(Iω̇ + ω×Iω)`.
+//! eq. 8 and 9 can be evaluated before β is known, `heights` those of the body over the ground; `whole` is the real robot, which has no gait. All follow Kane's form `Σ m ∂v/∂Ẋ·a + ∂ω/∂Ẋ·(Iω̇ + ω×Iω)`.
 
 mod closed_forms;
 mod curvature;
 mod floating;
+mod heights;
 mod impact;
 mod kernel;
 mod kinematics;
@@ -22,6 +23,7 @@ mod turn;
 mod whole;
 
 pub use closed_forms::{Equation, Section, closed_forms};
+pub use heights::lowest;
 pub use kernel::{Input, Kernel, Output, Shape};
 pub use lumps::{LUMPS, PARAMETERS};
 pub use model::Model;
@@ -48,6 +50,7 @@ fn derive(model: &mut Model) -> Vec<Kernel> {
         kernels.extend(staging::kernels(model, leg, &turn));
         kernels.extend(impact::kernels(model, leg));
         kernels.extend(curvature::kernels(model, leg, &turn));
+        kernels.extend(heights::kernels(model, leg));
         if model.mechanism.rotation == Rotation::Roll {
             kernels.extend(sharing::kernels(model, leg));
         }

@@ -1,7 +1,7 @@
 //! The mechanism's numbers as expressions: constants, or sums of parameters of the real robot.
 
 use crate::expr::{Poly, Var};
-use crate::mechanism::{Body, Family, Mechanism, Member};
+use crate::mechanism::{Body, Family, Mechanism};
 
 /// What of a mechanism is measured, in the order of [`Mechanism::numbers`]; SI units.
 #[derive(Clone, Debug)]
@@ -14,6 +14,18 @@ pub struct Quantities {
     pub rotor_inertia: Vec<Poly>,
     /// Foot of each leg in the axes of its last body.
     pub feet: [[Poly; 3]; 2],
+    /// The real legs of each.
+    pub members: [Vec<MemberQuantities>; 2],
+    /// Of the platform.
+    pub corners: Vec<[Poly; 3]>,
+}
+
+/// See `mechanism::Member`.
+#[derive(Clone, Debug)]
+pub struct MemberQuantities {
+    /// Of its links.
+    pub offsets: Vec<[Poly; 3]>,
+    pub spots: Vec<[Poly; 3]>,
 }
 
 /// See `mechanism::Body`.
@@ -70,14 +82,25 @@ impl Quantities {
             });
         }
         let rotor_inertia = mechanism.joints.iter().map(|_| one()).collect();
-        let feet = mechanism.legs.each_ref().map(|leg| {
+        let mut members = [Vec::new(), Vec::new()];
+        let feet = [0, 1].map(|leg| {
             let foot = [(); 3].map(|()| one());
-            // The dynamics are those of the virtual leg: its members' numbers are for others.
-            let of_member = |m: &Member| Body::COUNT * m.bodies.len() + 3;
-            (0..leg.members.iter().map(of_member).sum()).for_each(|_| drop(one()));
+            for member in &mechanism.legs[leg].members {
+                // Of the members matter the places of their joints: the dynamics are those of the virtual leg.
+                let mut offset = || {
+                    let offset = [(); 3].map(|()| one());
+                    (3..Body::COUNT).for_each(|_| drop(one()));
+                    offset
+                };
+                let offsets = member.bodies.iter().map(|_| offset()).collect();
+                (0..3).for_each(|_| drop(one()));
+                let spots = member.spots.iter().map(|_| [(); 3].map(|()| one())).collect();
+                members[leg].push(MemberQuantities { offsets, spots });
+            }
             foot
         });
-        Quantities { numbers, gravity, bodies, rotor_inertia, feet }
+        let corners = mechanism.corners.iter().map(|_| [(); 3].map(|()| one())).collect();
+        Quantities { numbers, gravity, bodies, rotor_inertia, feet, members, corners }
     }
 
     pub fn total_mass(&self) -> Poly {

@@ -2,11 +2,11 @@
 
 use super::function::Function;
 use super::layout::Layout;
-use crate::mechanism::{Actuated, Body, Mechanism, Member, VirtualLeg};
+use crate::mechanism::{Actuated, Body, Mechanism, Member, Point, Spot, VirtualLeg, points};
 use crate::spec::{HalfSteps, Limits, Rotation};
 
-/// A `Description`.
-pub fn description(m: &Mechanism, key: &str, functions: &[Function], runtime: &str) -> Layout {
+/// A `Description`; `lowest` tells which of the mechanism's points can be the lowest.
+pub fn description(m: &Mechanism, key: &str, lowest: &[usize], functions: &[Function], runtime: &str) -> Layout {
     let rotation = match m.rotation {
         Rotation::None => "None",
         Rotation::Pitch => "Pitch",
@@ -31,11 +31,14 @@ pub fn description(m: &Mechanism, key: &str, functions: &[Function], runtime: &s
             ("rotation", Layout::Word(format!("{runtime}::Rotation::{rotation}"))),
             ("half_steps", Layout::Word(format!("{runtime}::HalfSteps::{half_steps}"))),
             ("bodies", borrowed(m.bodies.iter().map(|b| body(b, runtime)))),
+            ("corners", borrowed(m.corners.iter().map(|s| spot(s, runtime)))),
             ("joints", borrowed(m.joints.iter().map(|j| joint(j, runtime)))),
             ("legs", Layout::list("[", m.legs.iter().map(|l| leg(l, runtime)), "]")),
             ("unactuated", Layout::value(m.unactuated)),
             ("polynomial_order", Layout::value(m.polynomial_order)),
             ("early", Layout::value(early)),
+            ("points", Layout::list("&[", points(m).iter().map(|p| point(p, runtime)), "]")),
+            ("lowest", Layout::list("&[", lowest.iter().map(Layout::value), "]")),
             ("limits", limits(&m.limits, runtime)),
             ("operations", Layout::list("&[", functions.iter().map(|f| operations(f, runtime)), "]")),
         ],
@@ -99,6 +102,24 @@ fn member(m: &Member, runtime: &str) -> Layout {
             ("bodies", borrowed(m.bodies.iter().map(|b| body(b, runtime)))),
             ("joints", borrowed(m.joints.iter().map(Layout::value))),
             ("foot", Layout::floats(m.foot)),
+            ("spots", borrowed(m.spots.iter().map(|s| spot(s, runtime)))),
+        ],
+    )
+}
+
+fn spot(s: &Spot, runtime: &str) -> Layout {
+    Layout::record(format!("{runtime}::Spot"), [("body", Layout::value(s.body)), ("at", Layout::floats(s.at))])
+}
+
+fn point(p: &Point, runtime: &str) -> Layout {
+    Layout::record(
+        format!("{runtime}::Point"),
+        [
+            ("name", Layout::value(&p.name)),
+            ("of", Layout::value(p.of)),
+            ("spot", Layout::value(p.spot)),
+            ("leg", Layout::value(p.leg)),
+            ("mirrored", Layout::value(p.mirrored)),
         ],
     )
 }
@@ -112,6 +133,7 @@ fn limits(l: &Limits, runtime: &str) -> Layout {
             ("swing_clearance", Layout::float(l.swing_clearance)),
             ("half_step_duration", Layout::floats(l.half_step_duration)),
             ("min_platform_height", Layout::float(l.min_platform_height)),
+            ("body_clearance", Layout::float(l.body_clearance)),
             ("real_legs", Layout::value(false)),
         ],
     )

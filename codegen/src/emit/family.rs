@@ -5,14 +5,15 @@ use super::function::{Function, functions};
 use super::gait::{constant, getter, header, items, methods};
 use super::layout::Layout;
 use super::modules::{file_name, key, paths, tree};
-use crate::dynamics::family_kernels;
+use crate::dynamics::{family_kernels, lowest};
 use crate::mechanism::{Family, Parameter, Sign};
 use crate::program::Search;
 use crate::spec::name::{FAMILIES_FOLDER, type_name};
 
 /// Source of the module of one gait of a family. `runtime` is the path of the module with the `Gait` trait.
 pub fn family_source(family: &Family, robot: &str, latex: &str, runtime: &str, origin: &str) -> String {
-    let (model, kernels) = family_kernels(family);
+    let (mut model, kernels) = family_kernels(family);
+    let lowest = lowest(&mut model);
     let (gait, sensitivity) = (functions(&model.ring, &kernels.gait), functions(&model.ring, &kernels.sensitivity));
     let mut search = Search::default();
     let [numbers, lumps, jacobian] =
@@ -31,7 +32,8 @@ pub fn family_source(family: &Family, robot: &str, latex: &str, runtime: &str, o
          \x20   lumps: [f64; {lump_count}],\n}}\n",
         m.gait, m.robot
     );
-    let (ty, numbers) = (format!("{runtime}::Description"), description(m, &key(robot, &m.gait), &gait, runtime));
+    let (ty, numbers) =
+        (format!("{runtime}::Description"), description(m, &key(robot, &m.gait), &lowest, &gait, runtime));
     constant(
         "What the gait of the specification's robot is made of, in numbers.",
         "DESCRIPTION",

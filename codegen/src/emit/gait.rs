@@ -4,7 +4,7 @@ use super::description::description;
 use super::function::{Function, base_name, functions};
 use super::layout::{Layout, indent, line};
 use super::modules::key;
-use crate::dynamics::{Input, Kernel, LUMPS, PARAMETERS, Shape, kernels};
+use crate::dynamics::{Input, Kernel, LUMPS, PARAMETERS, Shape, kernels, lowest};
 use crate::mechanism::{Lever, Mechanism};
 use crate::spec::name::type_name;
 use std::collections::{BTreeMap, BTreeSet};
@@ -20,13 +20,14 @@ pub fn gait_source(
     runtime: Option<&str>,
     origin: &str,
 ) -> String {
-    let (model, kernels) = kernels(mechanism);
+    let (mut model, kernels) = kernels(mechanism);
+    let lowest = lowest(&mut model);
     let (functions, (levers, latex)) = rayon::join(|| functions(&model.ring, &kernels), beside);
     let mut source = header(origin);
     source += &items(&functions);
     if let Some(runtime) = runtime {
         let key = key(robot, &mechanism.gait);
-        source += &implementation(mechanism, &levers, &key, whole, &functions, &latex, runtime);
+        source += &implementation(mechanism, &lowest, &levers, &key, whole, &functions, &latex, runtime);
     }
     source
 }
@@ -54,6 +55,7 @@ pub(super) fn items(functions: &[Function]) -> String {
 /// The gait's type with its description and its `impl Gait`.
 fn implementation(
     m: &Mechanism,
+    lowest: &[usize],
     levers: &[Lever],
     key: &str,
     whole: &str,
@@ -69,7 +71,7 @@ fn implementation(
         "What the gait is made of, in numbers.",
         "DESCRIPTION",
         &ty,
-        description(m, key, functions, runtime),
+        description(m, key, lowest, functions, runtime),
         &mut out,
     );
     out += &format!("impl {runtime}::Gait for {name} {{");

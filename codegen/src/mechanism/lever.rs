@@ -229,8 +229,9 @@ impl Mechanism {
         let of_joint = |j: &Actuated| [j.range[0], j.range[1], j.max_torque, j.unloaded_speed, j.loaded_speed];
         let l = &self.limits;
         let [shortest, longest] = l.half_step_duration;
-        let of_gait = [l.friction, l.min_vertical_force, l.swing_clearance, shortest, longest, l.min_platform_height];
-        self.joints.iter().flat_map(of_joint).chain(of_gait).collect()
+        let of_gait = [l.friction, l.min_vertical_force, l.swing_clearance, shortest, longest];
+        let heights = [l.min_platform_height, l.body_clearance];
+        self.joints.iter().flat_map(of_joint).chain(of_gait).chain(heights).collect()
     }
 }
 
@@ -259,4 +260,5 @@ fn places(robot: &mut Robot, limits: &mut Limits, mut visit: impl FnMut(Place)) 
     add(format_args!("limits.half_step_duration.shortest"), "s", shortest);
     add(format_args!("limits.half_step_duration.longest"), "s", longest);
     add(format_args!("limits.min_platform_height"), "m", &mut limits.min_platform_height);
+    add(format_args!("limits.body_clearance"), "m", &mut limits.body_clearance);
 }

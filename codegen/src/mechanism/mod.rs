@@ -7,11 +7,13 @@ mod family;
 mod lever;
 mod names;
 mod parameter;
+mod points;
 mod whole;
 
 pub use family::Family;
 pub use lever::{Lever, levers};
 pub use parameter::{Parameter, Sign, parameters, select, with};
+pub use points::{Point, Spot, points};
 pub use whole::{Whole, WholeJoint, WholeLeg};
 
 use crate::spec::{Axis, Gait, HalfSteps, Inertia, Joint, Leg, Limits, Robot, Rotation, Segment, Unactuated};
@@ -28,6 +30,8 @@ pub struct Mechanism {
     pub rotation: Rotation,
     /// Parents precede children; body 0 is the platform.
     pub bodies: Vec<Body>,
+    /// Corners of what the platform fills.
+    pub corners: Vec<Spot>,
     /// Joint coordinates q1, q2, … of virtual leg 1, then of virtual leg 2.
     pub joints: Vec<Actuated>,
     pub legs: [VirtualLeg; 2],
@@ -90,6 +94,8 @@ pub struct Member {
     pub joints: Vec<String>,
     /// Foot from the last joint, m.
     pub foot: [f64; 3],
+    /// Its joints, also those that the gait holds still.
+    pub spots: Vec<Spot>,
 }
 
 impl Mechanism {
@@ -106,7 +112,8 @@ impl Mechanism {
                 let leg = &robot.legs[*i];
                 let (mut links, foot) = chain(leg, from_centre(&leg.mount), 1, first);
                 links.iter_mut().zip(&link_names[*i]).for_each(|(link, name)| link.name.clone_from(name));
-                Member { name: leg.name.clone(), bodies: links, joints: joint_names[*i].clone(), foot }
+                let spots = points::joints(robot, *i, &joint_names[*i]);
+                Member { name: leg.name.clone(), bodies: links, joints: joint_names[*i].clone(), foot, spots }
             });
             let members = members.collect();
             let leg = robot.virtual_leg(&gait.virtual_legs[k]);
@@ -130,6 +137,7 @@ impl Mechanism {
             lateral: gait.lateral,
             rotation: gait.rotation,
             bodies,
+            corners: points::corners(&robot.platform),
             joints,
             legs,
             unactuated,
@@ -144,7 +152,7 @@ impl Mechanism {
     }
 
     /// Everything that is measured, in one fixed order: gravity; of each body offset, mass, mass centre and
-    /// inertia; of each joint the rotor's inertia; of each leg the foot, and of its members their bodies and feet.
+    /// inertia; of each joint the rotor's inertia; of each leg the foot, and of its members their bodies, feet and spots; corners.
     pub fn numbers(&self) -> Vec<f64> {
         let members = self.legs.iter().flat_map(|leg| &leg.members);
         let bodies = self.bodies.len() + members.map(|member| member.bodies.len()).sum::<usize>();
@@ -157,8 +165,10 @@ impl Mechanism {
             for member in &leg.members {
                 member.bodies.iter().for_each(|body| numbers.extend(body.numbers()));
                 numbers.extend(member.foot);
+                numbers.extend(member.spots.iter().flat_map(|spot| spot.at));
             }
         }
+        numbers.extend(self.corners.iter().flat_map(|corner| corner.at));
         numbers
     }
 

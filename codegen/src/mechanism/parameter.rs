@@ -105,6 +105,15 @@ pub fn places(robot: &mut Robot, mut visit: impl FnMut(Place)) {
         visit(Place::new(format_args!("links.{name}.com.{axis}"), "m", Sign::Any, false, number));
     }
     inertia(name, ["roll", "yaw", "pitch"], &mut platform.inertia, &mut visit);
+    if let Some(extent) = &mut platform.extent {
+        for (number, axis) in extent.size.iter_mut().zip(xyz) {
+            let name = format_args!("links.{name}.extent.size.{axis}");
+            visit(Place::new(name, "m", Sign::NonNegative, false, number));
+        }
+        for (number, axis) in extent.centre.iter_mut().zip(xyz).filter(|(number, _)| **number != 0.0) {
+            visit(Place::new(format_args!("links.{name}.extent.centre.{axis}"), "m", Sign::Any, false, number));
+        }
+    }
     for (leg, mounts) in robot.legs.iter_mut().zip(mounts) {
         for ((number, mount), axis) in leg.mount.iter_mut().zip(mounts).zip(xyz) {
             if let Some((first, negative)) = mount {

@@ -4,14 +4,22 @@ use super::Code;
 use super::diagnostic::Sink;
 use super::locked::tensor;
 use super::rigid::Rigid;
-use super::types::{Actuator, Inertia, Link, Platform};
+use super::types::{Actuator, Extent, Inertia, Link, Platform};
 use super::view::View;
 
 pub(super) fn platform(name: &str, view: &View<'_>, sink: &mut Sink) -> Option<Platform> {
     let mass = view.number("mass", sink);
     let com = if view.has("com") { view.vector("com", sink).map(|at| at.value) } else { Some([0.0; 3]) };
     let inertia = inertia(view, ["roll", "yaw", "pitch"], sink);
-    Some(Platform { name: name.to_string(), mass: mass?.value, com: com?, inertia: inertia? })
+    let extent = if view.has("extent") { extent(view, sink).map(Some) } else { Some(None) };
+    Some(Platform { name: name.to_string(), mass: mass?.value, com: com?, inertia: inertia?, extent: extent? })
+}
+
+fn extent(view: &View<'_>, sink: &mut Sink) -> Option<Extent> {
+    let extent = view.table("extent", sink)?;
+    let size = extent.vector("size", sink);
+    let centre = if extent.has("centre") { extent.vector("centre", sink).map(|at| at.value) } else { Some([0.0; 3]) };
+    Some(Extent { size: size?.value, centre: centre? })
 }
 
 pub(super) fn link(name: &str, view: &View<'_>, sink: &mut Sink) -> Option<Link> {
@@ -22,7 +30,14 @@ pub(super) fn link(name: &str, view: &View<'_>, sink: &mut Sink) -> Option<Link>
     let foot = if view.has("foot_mass") { view.number("foot_mass", sink)?.value } else { 0.0 };
     let end = end?;
     let body = Rigid { mass: mass?.value, com: com?, inertia: inertia? }.with(&Rigid::point(foot, end));
-    Some(Link { name: name.to_string(), mass: body.mass, end, com: body.com, inertia: body.inertia })
+    Some(Link {
+        name: name.to_string(),
+        mass: body.mass,
+        end,
+        com: body.com,
+        inertia: body.inertia,
+        locked: Vec::new(),
+    })
 }
 
 /// Moments about x, y, z under their names in this table, and products. No moment of a rigid body exceeds the

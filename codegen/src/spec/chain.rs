@@ -36,7 +36,7 @@ pub(super) fn assemble(parts: Parts, sink: &mut Sink) -> Option<(Platform, Vec<L
     let starts: Option<Vec<usize>> = starts.into_iter().collect(); // after all legs had their say
     let chains: Vec<Vec<usize>> = starts?.into_iter().map(|joint| parts.chain(joint)).collect();
     parts.check_all_used(&chains, sink);
-    parts.build(platform, &chains)
+    parts.build(platform, &chains, sink)
 }
 
 impl Parts {
@@ -155,8 +155,13 @@ impl Parts {
     }
 
     /// The plain values, if every part could be read.
-    fn build(&self, platform: usize, chains: &[Vec<usize>]) -> Option<(Platform, Vec<Leg>, Vec<LegPlaces>)> {
-        let Some(Body::Platform(platform)) = &self.links.get(platform)?.1 else {
+    fn build(
+        &self,
+        platform: usize,
+        chains: &[Vec<usize>],
+        sink: &mut Sink,
+    ) -> Option<(Platform, Vec<Leg>, Vec<LegPlaces>)> {
+        let Some(Body::Platform(platform, extent_at)) = &self.links.get(platform)?.1 else {
             return None;
         };
         let mut legs = Vec::new();
@@ -164,9 +169,10 @@ impl Parts {
         for (leg, chain) in self.legs.iter().zip(chains) {
             let mount = leg.mount.as_ref()?;
             let segments: Option<Vec<Segment>> = chain.iter().map(|&j| self.segment(j)).collect();
-            legs.push(Leg { name: leg.name.value.clone(), mount: mount.value, chain: segments? });
+            legs.push(Leg { name: leg.name.value.clone(), mount: mount.value, chain: segments?, locked: Vec::new() });
             places.push(LegPlaces { name: leg.name.span.clone(), mount: mount.span.clone() });
         }
+        check_reach(platform, &legs, extent_at, sink);
         Some((platform.clone(), legs, places))
     }
 
@@ -182,6 +188,25 @@ impl Parts {
         match self.links.iter().find(|(link, _)| link.value == name)? {
             (_, Some(Body::Link(link))) => Some(link),
             _ => None,
+        }
+    }
+}
+
+/// Every foot must reach out of the platform's extent: else that lies under the ground on which the foot stands.
+fn check_reach(platform: &Platform, legs: &[Leg], at: &Span, sink: &mut Sink) {
+    let Some(extent) = &platform.extent else { return };
+    for leg in legs {
+        let length: f64 = leg.chain.iter().map(|s| s.link.end.iter().map(|x| x * x).sum::<f64>().sqrt()).sum();
+        let depth = |k: usize| 0.5 * extent.size[k] - (leg.mount[k] - extent.centre[k]).abs();
+        let depth = (0..3).map(depth).fold(f64::INFINITY, f64::min);
+        if depth > length {
+            let title = format!("the foot of leg `{}` does not reach out of the platform's extent", leg.name);
+            let help = format!(
+                "the leg is {length:.4} m long and starts {depth:.4} m inside the box: sizes are whole edges, in m, and the \
+                 centre is in the frame of the mounts"
+            );
+            sink.report(Code::ExtentHidesLeg, title, at, "a box around the whole leg", help);
+            return;
         }
     }
 }

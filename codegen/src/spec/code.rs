@@ -67,6 +67,8 @@ codes! {
     AmbiguousFirstJoint = "S022",
     /// A number so small that what is computed from it would vanish.
     Vanishing = "S023",
+    /// A leg that cannot reach out of the platform's extent.
+    ExtentHidesLeg = "S024",
     /// A gait that does not have two virtual legs.
     NotTwoVirtualLegs = "S030",
     /// A leg that belongs to no virtual leg.

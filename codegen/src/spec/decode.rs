@@ -88,7 +88,10 @@ impl View<'_> {
 
     pub fn vector(&self, name: &str, sink: &mut Sink) -> Option<At<[f64; 3]>> {
         let field = self.field(name)?;
-        field.numbers(Bound::Any, sink)
+        let Kind::Vector(bound) = field.key.kind else {
+            return None;
+        };
+        field.numbers(bound, sink)
     }
 
     pub fn pair(&self, name: &str, sink: &mut Sink) -> Option<At<[f64; 2]>> {

@@ -29,9 +29,30 @@ pub(super) static PLATFORM: Table = Table {
     doc: "The link that carries the legs.",
     keys: &[
         Key::new("mass", Number(Positive), "kg", "Mass."),
-        Key::new("com", Vector, "m", "Mass centre in the frame of the legs' mounts: x forward, y up, z to the right.")
-            .or("[0, 0, 0]"),
+        Key::new(
+            "com",
+            Vector(Any),
+            "m",
+            "Mass centre in the frame of the legs' mounts: x forward, y up, z to the right.",
+        )
+        .or("[0, 0, 0]"),
         Key::new("inertia", Kind::Table(&PLATFORM_INERTIA), "kg·m²", "Moments of inertia about the mass centre."),
+        Key::new(
+            "extent",
+            Kind::Table(&EXTENT),
+            "m",
+            "A box around it, whose corners must stay above the ground as the joints must.",
+        )
+        .or("no box"),
+    ],
+};
+
+pub(super) static EXTENT: Table = Table {
+    noun: "the extent",
+    doc: "A box with edges along the platform's axes: x forward, y up, z to the right.",
+    keys: &[
+        Key::new("size", Vector(NonNegative), "m", "Length, height and width: the edges along x, y and z."),
+        Key::new("centre", Vector(Any), "m", "Its middle in the frame of the legs' mounts.").or("[0, 0, 0]"),
     ],
 };
 
@@ -42,7 +63,7 @@ pub(super) static PLATFORM_INERTIA: Table = Table {
         Key::new("roll", Number(NonNegative), "kg·m²", "About x, forward."),
         Key::new("yaw", Number(NonNegative), "kg·m²", "About y, up."),
         Key::new("pitch", Number(NonNegative), "kg·m²", "About z, to the right."),
-        Key::new("products", Vector, "kg·m²", PRODUCTS).or("[0, 0, 0]"),
+        Key::new("products", Vector(Any), "kg·m²", PRODUCTS).or("[0, 0, 0]"),
     ],
 };
 
@@ -83,7 +104,7 @@ pub(super) static LINK_INERTIA: Table = Table {
         Key::new("swing", Number(NonNegative), "kg·m²", "About the transverse axis z."),
         Key::new("lateral", Number(NonNegative), "kg·m²", "About the forward axis x."),
         Key::new("axial", Number(NonNegative), "kg·m²", "About the link's own axis y."),
-        Key::new("products", Vector, "kg·m²", PRODUCTS).or("[0, 0, 0]"),
+        Key::new("products", Vector(Any), "kg·m²", PRODUCTS).or("[0, 0, 0]"),
     ],
 };
 
@@ -112,7 +133,12 @@ pub(super) static LEG: Table = Table {
     noun: "a leg",
     doc: "A chain of joints and links that hangs on the platform.",
     keys: &[
-        Key::new("mount", Vector, "m", "Its first joint in the platform's frame: x forward, y up, z to the right."),
+        Key::new(
+            "mount",
+            Vector(Any),
+            "m",
+            "Its first joint in the platform's frame: x forward, y up, z to the right.",
+        ),
         Key::new("first_joint", Name, "", "The joint with which the chain starts.")
             .or("the only joint that hangs on the platform"),
     ],
@@ -218,6 +244,13 @@ pub(super) static LIMITS: Table = Table {
             Number(NonNegative),
             "m",
             "Least height of the platform's mass centre above the ground.",
+        )
+        .or("0"),
+        Key::new(
+            "body_clearance",
+            Number(NonNegative),
+            "m",
+            "Least height above the ground of everything but feet: of all joints and of the corners of the platform's extent.",
         )
         .or("0"),
     ],

@@ -95,11 +95,16 @@ fn limits(view: &View<'_>, sink: &mut Sink) -> Option<Limits> {
         true => view.number("min_platform_height", sink).map(|height| height.value),
         false => Some(0.0),
     };
+    let body_clearance = match view.has("body_clearance") {
+        true => view.number("body_clearance", sink).map(|height| height.value),
+        false => Some(0.0),
+    };
     Some(Limits {
         friction: friction?.value,
         min_vertical_force: min_vertical_force?.value,
         swing_clearance: swing_clearance?.value,
         half_step_duration: half_step_duration?.value,
         min_platform_height: min_platform_height?,
+        body_clearance: body_clearance?,
     })
 }

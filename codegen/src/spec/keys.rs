@@ -37,7 +37,7 @@ pub(super) enum Kind {
     Order(&'static [i64]),
     Number(Bound),
     /// `[x, y, z]`.
-    Vector,
+    Vector(Bound),
     /// `[lowest, highest]`.
     Pair(Bound),
     /// A distance along the link, or `[x, y, z]`.
@@ -124,7 +124,7 @@ impl Kind {
             Self::Choice(words) => words.iter().map(|w| format!("\"{w}\"")).collect::<Vec<_>>().join(" or "),
             Self::Order(orders) => orders.iter().map(i64::to_string).collect::<Vec<_>>().join(" or "),
             Self::Number(_) | Self::Along(_) => "…".into(),
-            Self::Vector => "[x, y, z]".into(),
+            Self::Vector(_) => "[x, y, z]".into(),
             Self::Pair(_) => "[lowest, highest]".into(),
             Self::Choices(words) => {
                 let words: Vec<_> = words.iter().take(2).map(|w| format!("\"{w}\"")).collect();
@@ -148,7 +148,7 @@ impl Kind {
             Self::Text | Self::Name | Self::Choice(_) | Self::Coordinate => "a text in quotes",
             Self::Order(_) => "a whole number",
             Self::Number(_) => "a number",
-            Self::Vector => "three numbers",
+            Self::Vector(_) => "three numbers",
             Self::Pair(_) => "two numbers",
             Self::Along(_) => "a number or three numbers",
             Self::Choices(_) => "a list of texts",

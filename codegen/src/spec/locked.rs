@@ -5,7 +5,7 @@ use super::diagnostic::{At, Sink};
 use super::nearest::nearest;
 use super::rigid::{IDENTITY, Rigid, Rotation3, apply, times, turn};
 use super::robot::RobotFile;
-use super::types::{Axis, Inertia, Joint, Leg, Link, Platform, Robot, Segment};
+use super::types::{Axis, Inertia, Joint, Leg, Link, Locked, Platform, Robot, Segment};
 
 /// A joint whose axis is no coordinate axis any more once others are locked.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -38,6 +38,7 @@ impl Robot {
 fn lock(leg: &Leg, angles: &[(String, f64)], platform: &mut Platform) -> Result<Leg, Tilted> {
     let mut mount = leg.mount;
     let mut chain: Vec<Segment> = Vec::new();
+    let mut on_platform = leg.locked.clone();
     // From the axes that the links are given in to those of the link that carries them now.
     let mut rotation = IDENTITY;
     for segment in &leg.chain {
@@ -49,6 +50,7 @@ fn lock(leg: &Leg, angles: &[(String, f64)], platform: &mut Platform) -> Result<
             segment.joint.axis = axis;
             segment.link.put(&link.rigid().moved(&rotation, [0.0; 3]));
             segment.link.end = apply(&rotation, &link.end);
+            segment.link.locked.iter_mut().for_each(|locked| locked.at = apply(&rotation, &locked.at));
             chain.push(segment);
             continue;
         };
@@ -57,20 +59,23 @@ fn lock(leg: &Leg, angles: &[(String, f64)], platform: &mut Platform) -> Result<
         let body = link.rigid().moved(&rotation, here);
         let further = apply(&rotation, &link.end);
         let end = [0, 1, 2].map(|i| here[i] + further[i]);
+        let held = Locked { name: joint.name.clone(), at: here };
         match chain.last_mut() {
             Some(above) => {
+                above.link.locked.push(held);
                 let sum = above.link.rigid().with(&body);
                 above.link.put(&sum);
                 above.link.end = end;
             }
             None => {
+                on_platform.push(held);
                 let sum = platform.rigid().with(&body);
                 (platform.mass, platform.com, platform.inertia) = (sum.mass, sum.com, sum.inertia);
                 mount = end;
             }
         }
     }
-    Ok(Leg { name: leg.name.clone(), mount, chain })
+    Ok(Leg { name: leg.name.clone(), mount, chain, locked: on_platform })
 }
 
 /// The coordinate axis that `axis` has become, if it is one.

@@ -10,8 +10,9 @@
 //!
 //! A quantity with a unit never has a default, but where absence says all there is: a platform's mass centre
 //! lies at the origin of the frame of the legs' mounts unless `com` says otherwise, axes are principal ones
-//! unless `products` are given, there is no foot without `foot_mass`, and the platform must stay above the
-//! ground at no particular height unless `min_platform_height` says so. Other defaults: a joint's `axis` is
+//! unless `products` are given, there is no foot without `foot_mass`, a platform has no
+//! `extent`, and body and platform must stay above the ground at no particular height unless `body_clearance` and
+//! `min_platform_height` say so. Other defaults: a joint's `axis` is
 //! pitch, a leg's `first_joint` is the only joint that hangs on the platform, a gait's `name` is its file's
 //! name, its `polynomial_order` is 4, and it locks no joints.
 

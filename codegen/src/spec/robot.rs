@@ -156,7 +156,8 @@ impl RawLeg {
 
 /// A link as written: the platform has other keys than the links of legs.
 pub(super) enum Body {
-    Platform(Platform),
+    /// With the place where its extent is named.
+    Platform(Platform, Span),
     Link(Link),
 }
 
@@ -174,7 +175,7 @@ fn links(root: &View<'_>, joints: &[RawJoint], sink: &mut Sink) -> Option<Vec<(A
     each(views, |name, view| {
         let body = view.and_then(|view| match view.is(&format::LINK) {
             true => link(&name.value, &view, sink).map(Body::Link),
-            false => platform(&name.value, &view, sink).map(Body::Platform),
+            false => platform(&name.value, &view, sink).map(|read| Body::Platform(read, view.key_span("extent"))),
         });
         (name, body)
     })

@@ -80,7 +80,7 @@ fn value(kind: &Kind) -> String {
         Kind::Choice(all) => format!("\"enum\": {}", words(all.iter().copied())),
         Kind::Order(all) => format!("\"enum\": {all:?}"),
         Kind::Number(bound) => number(*bound),
-        Kind::Vector => list(Bound::Any, 3),
+        Kind::Vector(bound) => list(*bound, 3),
         Kind::Pair(bound) => list(*bound, 2),
         Kind::Along(bound) => format!("\"anyOf\": [{{ {} }}, {{ {} }}]", number(*bound), list(Bound::Any, 3)),
         Kind::Choices(all) => {

@@ -36,8 +36,13 @@ fn diagonal(moments: [f64; 3]) -> Inertia {
 fn the_shipped_robot() {
     let robot = shipped_robot().robot;
     assert_eq!((robot.name.as_str(), robot.gravity), ("quadruped", 9.81));
-    let platform =
-        Platform { name: "platform".into(), mass: 6.65, com: [0.0; 3], inertia: diagonal([0.2031, 0.5188, 0.3157]) };
+    let platform = Platform {
+        name: "platform".into(),
+        mass: 6.65,
+        com: [0.0; 3],
+        inertia: diagonal([0.2031, 0.5188, 0.3157]),
+        extent: None,
+    };
     assert_eq!(robot.platform, platform);
     let mounts: Vec<_> = robot.legs.iter().map(|leg| (leg.name.as_str(), leg.mount)).collect();
     assert_eq!(
@@ -65,6 +70,7 @@ fn the_shipped_robot() {
             end: [0.0, -0.15, 0.0],
             com: [0.0, -com, 0.0],
             inertia: diagonal([inertia, 0.0, inertia]),
+            locked: Vec::new(),
         },
     };
     let chain = [
@@ -86,6 +92,7 @@ fn the_shipped_gaits() {
         swing_clearance: 0.005,
         half_step_duration: [0.05, longest],
         min_platform_height: 0.0,
+        body_clearance: 0.0,
     };
     let gait = |name: &str, virtual_legs, rotation, unactuated, half_steps, longest| Gait {
         name: name.into(),

@@ -22,6 +22,26 @@ pub struct Platform {
     pub com: [f64; 3],
     /// About the mass centre, in platform axes.
     pub inertia: Inertia,
+    /// What it fills, if that is given.
+    pub extent: Option<Extent>,
+}
+
+/// A box with edges along the platform's axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extent {
+    /// Edges along x, y, z, m.
+    pub size: [f64; 3],
+    /// Its middle in the frame in which the legs' mounts are given, m.
+    pub centre: [f64; 3],
+}
+
+impl Extent {
+    /// In the frame in which the legs' mounts are given, m.
+    pub fn corners(&self) -> [[f64; 3]; 8] {
+        std::array::from_fn(|corner| {
+            [0, 1, 2].map(|k| self.centre[k] + if corner >> k & 1 == 0 { -0.5 } else { 0.5 } * self.size[k])
+        })
+    }
 }
 
 /// An inertia tensor, kg·m²: moments Ixx, Iyy, Izz on its diagonal, −∫xy dm and the like beside it.
@@ -34,6 +54,17 @@ pub struct Leg {
     /// First joint in the platform's frame, m.
     pub mount: [f64; 3],
     pub chain: Vec<Segment>,
+    /// Joints above its first that a gait holds still, in the platform's frame.
+    pub locked: Vec<Locked>,
+}
+
+/// A joint that a gait holds still ([`Robot::locked`]): it moves nothing, but is a point of what carries it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Locked {
+    /// The joint.
+    pub name: String,
+    /// In the axes of the link (from its joint) or of the platform, m.
+    pub at: [f64; 3],
 }
 
 /// A joint and the link that it carries.
@@ -86,6 +117,8 @@ pub struct Link {
     pub com: [f64; 3],
     /// About the mass centre, in link axes.
     pub inertia: Inertia,
+    /// Joints that a gait holds still, so that what they carried is part of this link.
+    pub locked: Vec<Locked>,
 }
 
 /// The motor of one joint of one leg.
@@ -160,4 +193,6 @@ pub struct Limits {
     pub half_step_duration: [f64; 2],
     /// Of the platform's mass centre, m.
     pub min_platform_height: f64,
+    /// Of everything but feet above the ground, m.
+    pub body_clearance: f64,
 }

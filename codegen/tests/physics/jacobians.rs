@@ -188,3 +188,17 @@ pub fn of_curvature(d: &Derived, s: &State, draws: &mut Draws, leg: usize) {
     }
     assert_close("touchdown's Hessian", &found, &expected, TOLERANCE * largest(&expected));
 }
+
+/// Heights and the second derivatives of their weighted sum.
+pub fn of_heights(d: &Derived, s: &State, draws: &mut Draws, leg: usize) {
+    let name = |what: &str| format!("{what}{}", leg + 1);
+    let values = |q: &[f64]| d.run(&name("heights"), &[q]).get("heights").to_vec();
+    let now = d.run(&name("heights"), &[&s.q]);
+    assert_close("∂heights/∂q", now.get("jacobian"), &differences(&s.q, values), TOLERANCE);
+    let weights = draws.vector(now.get("heights").len(), 1.0);
+    let run = |q: &[f64]| d.run(&name("heights_curvature"), &[q, &weights]);
+    let gradient = |q: &[f64]| run(q).get("gradient").to_vec();
+    let sum = differences(&s.q, |q| vec![dot(&values(q), &weights)]);
+    assert_close("gradient of the heights", &gradient(&s.q), &sum, TOLERANCE);
+    assert_close("second derivatives of the heights", run(&s.q).get("q_q"), &differences(&s.q, gradient), TOLERANCE);
+}

@@ -6,6 +6,7 @@
 mod common;
 mod floating;
 mod gaits;
+mod heights;
 mod impact;
 mod jacobians;
 mod numbers;
@@ -43,6 +44,7 @@ fn obeys_all_laws(mechanism: &Mechanism, draws: &mut Draws) {
             jacobians::of_inverse_dynamics(&d, &s, leg);
             jacobians::of_stages(&d, &s, leg);
             jacobians::of_curvature(&d, &s, draws, leg);
+            jacobians::of_heights(&d, &s, draws, leg);
         }
         impact::both_feet(&d, &s);
     }
@@ -59,8 +61,10 @@ fn random_robots(build: &Build, cases: u32) {
     let numbers = prop::collection::vec(0.0..1.0, DRAWS);
     let result = TestRunner::new(config).run(&numbers, |numbers| {
         let mut draws = Draws::new(numbers);
-        let mechanism = robots::random(build, &mut draws);
+        let (robot, gait) = robots::specification(build, &mut draws);
+        let mechanism = Mechanism::new(&robot, &gait);
         obeys_all_laws(&mechanism, &mut draws);
+        heights::of_random(&robot, &gait, &mut draws);
         Ok(())
     });
     if let Err(e) = result {

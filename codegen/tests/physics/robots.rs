@@ -1,6 +1,5 @@
 //! Random robots that could be built: positive masses, inertias that a rigid body can have.
 
-use piaffe_codegen::mechanism::Mechanism;
 use piaffe_codegen::spec::{
     Actuator, Axis, Gait, HalfSteps, Inertia, Joint, Leg, Limits, Link, Platform, Robot, Rotation, Segment, Unactuated,
 };
@@ -124,15 +123,11 @@ fn leg(name: &str, mount: [f64; 3], axes: &[Axis], draws: &mut Draws, build: &Bu
                 end,
                 com,
                 inertia: inertia(draws, 0.01 * mass, build.crooked),
+                locked: Vec::new(),
             },
         }
     });
-    Leg { name: name.into(), mount, chain: chain.collect() }
-}
-
-pub fn random(build: &Build, draws: &mut Draws) -> Mechanism {
-    let (robot, gait) = specification(build, draws);
-    Mechanism::new(&robot, &gait)
+    Leg { name: name.into(), mount, chain: chain.collect(), locked: Vec::new() }
 }
 
 pub fn specification(build: &Build, draws: &mut Draws) -> (Robot, Gait) {
@@ -141,6 +136,7 @@ pub fn specification(build: &Build, draws: &mut Draws) -> (Robot, Gait) {
         mass: draws.between(1.0, 10.0),
         com: [draws.between(-0.05, 0.05), draws.between(-0.05, 0.05), 0.0],
         inertia: inertia(draws, 0.3, build.crooked),
+        extent: None,
     };
     let mut legs = Vec::new();
     for (k, axes) in build.axes.iter().enumerate() {
@@ -186,6 +182,7 @@ pub fn specification(build: &Build, draws: &mut Draws) -> (Robot, Gait) {
             swing_clearance: 0.0,
             half_step_duration: [0.1, 1.0],
             min_platform_height: 0.0,
+            body_clearance: 0.0,
         },
     };
     (robot, gait)

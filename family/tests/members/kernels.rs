@@ -24,6 +24,8 @@ pub fn call(member: &dyn Parametric, name: &str, i: &[Vec<f64>], out: &mut [f64]
         "momentum" => member.momentum(leg, &i[0], &i[1], out),
         "inverse_jacobian" => member.inverse_jacobian(leg, &i[0], &i[1], &i[2], out),
         "placement" => member.placement(leg, &i[0], out),
+        "heights" => member.heights(leg, &i[0], out),
+        "heights_curvature" => member.heights_curvature(leg, &i[0], &i[1], out),
         "swing_velocity" => member.swing_velocity(leg, &i[0], &i[1], out),
         "early" => member.early(leg, &i[0], &i[1], out),
         "late" => member.late(leg, &i[0], i[1][0], out),

@@ -101,6 +101,13 @@ impl PhaseWork {
         let others = [chi, kappa, height, self.travel_weight(p, node), velocity, w[y.height()]];
         let [q, qd, qdd] = p.instants.state(d, node);
         gait.curvature(p.leg, q, qd, qdd, &self.n, &w[y.force(0)..][..nc], &others, &mut self.out);
+        let heights = &w[y.heights()];
+        if heights.iter().any(|w| *w != 0.0) {
+            gait.heights_curvature(p.leg, q, heights, &mut self.heights);
+            let (by_q, q_q) = self.heights.split_at(nq);
+            self.out[..nq].iter_mut().zip(by_q).for_each(|(out, x)| *out += x);
+            self.out[3 * nq..].iter_mut().zip(q_q).for_each(|(out, x)| *out += x);
+        }
         let shared = &w[y.shared()];
         if shared.iter().any(|w| *w != 0.0) {
             gait.sharing_curvature(p.leg, q, qd, qdd, shared, &mut self.shared);

@@ -61,7 +61,9 @@ struct PhaseWork {
     /// Per node ∂L/∂(β, β̇) through the quantities, and the multiplier of the balance.
     direct: Vec<[f64; 3]>,
     out: Vec<f64>,
-    /// The same of what real legs share.
+    /// Gradient and second derivatives in q of the weighted heights.
+    heights: Vec<f64>,
+    /// Those in (q, q̇, q̈) of what real legs share.
     shared: Vec<f64>,
     n: Vec<f64>,
     /// One vector of local parameters per unactuated column of G.
@@ -85,6 +87,7 @@ impl Workspace {
                 stationarity: Vec::with_capacity(phase.mesh.nodes.len()),
                 direct: Vec::with_capacity(phase.mesh.nodes.len()),
                 out: z(3 * nq + 4 * nq * nq),
+                heights: z(nq + nq * nq),
                 shared: z(3 * nq + 4 * nq * nq),
                 n: z(d.joints() + 1),
                 v: [z(np), z(np), z(np)],

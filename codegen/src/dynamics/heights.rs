@@ -1,0 +1,130 @@
+//! Heights over the ground of all that must stay above it but feet, from the foot in support.
+//!
+//! Of points that cannot be lower than others there is no need to know: those at the same height (what legs of a virtual leg
+//! have in common), and on one body, or beside each other on bodies that turn alike, those within the hull of the others as the
+//! platform's rotation sees them: a level platform has one lowest point, a pitching one those of its silhouette.
+
+use super::kernel::Kernel;
+use super::kinematics::{Vec3, add, rotate, zero};
+use super::model::Model;
+use crate::expr::{Poly, Var};
+use crate::mechanism::{Point, points};
+use crate::spec::Rotation;
+use std::f64::consts::{PI, TAU};
+
+/// Kernels for stance on `leg`.
+pub fn kernels(model: &mut Model, leg: usize) -> Vec<Kernel> {
+    let q = model.q(0);
+    let foot = model.foot(leg);
+    let heights: Vec<Poly> = all(model).into_iter().filter(|h| h.counts).map(|h| &h.place[1] - &foot[1]).collect();
+    let weights: Vec<Var> = (0..heights.len()).map(|k| model.ring.symbol(format!("w{k}"))).collect();
+    let mut sum = Poly::zero();
+    for (weight, height) in weights.iter().zip(&heights) {
+        sum += &(&Poly::from(*weight) * height);
+    }
+    let gradient: Vec<Poly> = q.iter().map(|s| model.ring.derivative(&sum, *s)).collect();
+    let values = Kernel::new(
+        format!("heights{}", leg + 1),
+        "Heights over the ground of joints and corners, those that can be the lowest, with their Jacobian in q.",
+    )
+    .input("q", q.clone())
+    .vector("heights", heights.clone(), "m, in the order of the description's `lowest`")
+    .matrix("jacobian", model.jacobian(&heights, &q), "∂heights/∂q");
+    let curvature = Kernel::new(
+        format!("heights_curvature{}", leg + 1),
+        "Gradient in q and second derivatives of the sum of these heights, each with its weight.",
+    )
+    .input("q", q.clone())
+    .input("weights", weights)
+    .vector("gradient", gradient.clone(), "∂/∂q")
+    .matrix("q_q", model.hessian(&gradient, &q), "∂²/∂q∂q");
+    vec![values, curvature]
+}
+
+/// Which of the mechanism's points can be the lowest.
+pub fn lowest(model: &mut Model) -> Vec<usize> {
+    all(model).iter().enumerate().filter(|(_, height)| height.counts).map(|(k, _)| k).collect()
+}
+
+/// A point from the platform's mass centre.
+struct Height {
+    place: Vec3,
+    /// What the platform alone adds to it, as far as its rotation moves that up or down, in its own axes.
+    arm: Vec<Poly>,
+    /// The height of the rest.
+    rest: Poly,
+    /// Whether it can be lower than all others.
+    counts: bool,
+}
+
+fn all(model: &Model) -> Vec<Height> {
+    let mut heights: Vec<Height> = points(&model.mechanism).iter().map(|point| Height::new(model, point)).collect();
+    for k in 0..heights.len() {
+        let (before, rest) = heights.split_at(k);
+        let same = |other: &Height| other.rest.is_close_to(&rest[0].rest) && same(&other.arm, &rest[0].arm);
+        heights[k].counts = !before.iter().any(|other| other.counts && same(other));
+    }
+    let inside: Vec<usize> =
+        (0..heights.len()).filter(|k| heights[*k].counts && heights[*k].is_inside(&heights)).collect();
+    inside.into_iter().for_each(|k| heights[k].counts = false);
+    heights
+}
+
+fn same(a: &[Poly], b: &[Poly]) -> bool {
+    a.iter().zip(b).all(|(a, b)| a.is_close_to(b))
+}
+
+impl Height {
+    fn new(model: &Model, point: &Point) -> Height {
+        let (m, numbers) = (&model.mechanism, &model.quantities);
+        let links = point.links(m);
+        let arm = |k: usize| -> Vec3 {
+            let mut arm = match point.of {
+                Some((leg, member)) if k < links => numbers.members[leg][member].offsets[k].clone(),
+                Some((leg, member)) => numbers.members[leg][member].spots[point.spot].clone(),
+                None => numbers.corners[point.spot].clone(),
+            };
+            if point.mirrored {
+                arm[2] = -&arm[2];
+            }
+            arm
+        };
+        let place = |k: usize| rotate(&model.kinematics.bodies[point.body(m, k)].axes, &arm(k));
+        let rest = (1..=links).fold(zero(), |sum, k| add(&sum, &place(k)));
+        let seen: &[usize] = match m.rotation {
+            Rotation::None => &[1],
+            Rotation::Pitch => &[0, 1],
+            Rotation::Roll => &[1, 2],
+        };
+        let own = arm(0);
+        Height {
+            place: add(&place(0), &rest),
+            arm: seen.iter().map(|axis| own[*axis].clone()).collect(),
+            rest: rest[1].clone(),
+            counts: true,
+        }
+    }
+
+    /// Whether it lies within the hull of others that are beside it whatever the joints do.
+    fn is_inside(&self, all: &[Height]) -> bool {
+        let constant = |height: &Height| height.arm.iter().map(Poly::as_constant).collect::<Option<Vec<f64>>>();
+        let Some(own) = constant(self) else { return false };
+        let beside = all.iter().filter(|other| other.counts && other.rest.is_close_to(&self.rest));
+        let away =
+            beside.filter_map(constant).map(|other| other.iter().zip(&own).map(|(a, b)| a - b).collect::<Vec<_>>());
+        let away: Vec<Vec<f64>> = away.filter(|away| away.iter().any(|x| *x != 0.0)).collect();
+        match own.len() {
+            1 => away.iter().any(|away| away[0] < 0.0),
+            _ => !leaves_half_plane(&away),
+        }
+    }
+}
+
+/// Whether some direction points away from all of these.
+fn leaves_half_plane(away: &[Vec<f64>]) -> bool {
+    let mut angles: Vec<f64> = away.iter().map(|v| v[1].atan2(v[0])).collect();
+    angles.sort_by(f64::total_cmp);
+    let next = angles.iter().skip(1).copied().chain(angles.first().map(|first| first + TAU));
+    let widest = angles.iter().zip(next).map(|(a, b)| b - a).fold(0.0, f64::max);
+    angles.is_empty() || widest > PI + 1e-9
+}
