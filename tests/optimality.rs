@@ -1,7 +1,9 @@
 //! Optimality re-derived from the motion alone.
 
 use piaffe::altered::Altered;
+use piaffe::cycle::Cycle;
 use piaffe::gaits::GAITS;
+use piaffe::instant::Quantities;
 use piaffe::model::Gait;
 use piaffe::motion::{Criterion, Motion};
 use piaffe::optimality::{KKT_RESIDUAL, Linearized, Optimality, optimality};
@@ -83,4 +85,35 @@ fn a_price_is_what_loosening_the_limit_gains() {
         compared += 1;
     }
     assert!(compared >= 3, "{compared}");
+}
+
+#[test]
+fn knees_that_must_be_higher_cost_their_price() {
+    let criterion = Criterion::Energy;
+    for key in ["trot", "curvet"] {
+        let gait = GAITS.iter().copied().find(|g| g.description().key == key).unwrap();
+        let free = optimum(gait, criterion, 0.6);
+        let mut cycle = Cycle::new(gait, criterion, 0.6);
+        cycle.simulate(&free.theta).unwrap();
+        let heights = Quantities::new(gait.description()).heights();
+        let nodes = (0..cycle.phases()).flat_map(|phase| (0..cycle.nodes(phase)).map(move |node| (phase, node)));
+        let lowest = nodes.flat_map(|(phase, node)| &cycle.quantities(phase, node)[heights.clone()]);
+        let lowest = lowest.copied().fold(f64::INFINITY, f64::min);
+        assert!(lowest > 0.05, "{key}: knees at {lowest} m");
+        let raised = |by: f64| Altered::new(gait, |d| d.limits.body_clearance = lowest + 0.002 + by).unwrap();
+        let best = |by: f64, near: &Local| {
+            let gait = raised(by);
+            let local = Task { gait: &gait, criterion, speed: 0.6 }.follow(&near.theta, &mut |_| Control::Continue);
+            assert!(local.status.is_optimal(), "{key}: {:?}", local.status);
+            local
+        };
+        let local = best(0.0, &free);
+        assert!(local.costs.of(criterion) > free.costs.of(criterion), "{key}: higher knees cost nothing");
+        let found = optimality(&raised(0.0), criterion, 0.6, &local.motion).unwrap();
+        let price: f64 = found.limits.iter().filter(|p| p.constraint.starts_with("height of ")).map(|p| p.value).sum();
+        let h = 1e-5;
+        let slope = (best(h, &local).costs.of(criterion) - best(-h, &local).costs.of(criterion)) / (2.0 * h);
+        let expected = price / gait.description().leg_length();
+        assert!(price > 0.0 && (slope / expected - 1.0).abs() < 1e-3, "{key}: {slope} {expected}");
+    }
 }

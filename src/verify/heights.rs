@@ -3,8 +3,8 @@
 use super::geometry::{Geometry, Plane, Vec3};
 use super::multibody::Multibody;
 use super::numbers::Numbers;
-use crate::number::Scalar;
 use crate::model::{Description, Point, Rotation};
+use crate::number::Scalar;
 
 /// Of each of the description's points, the first that is always at the same height.
 pub fn alike(d: &Description) -> Vec<usize> {

@@ -5,7 +5,7 @@ use super::numbers::assert_close;
 use super::robots::Draws;
 use super::state::State;
 use piaffe_codegen::dynamics::lowest;
-use piaffe_codegen::mechanism::{Mechanism, points};
+use piaffe_codegen::mechanism::{Mechanism, levers, points};
 use piaffe_codegen::spec::{Axis, Extent, Gait, HalfSteps, Robot, Rotation};
 
 type Matrix = [[f64; 3]; 3];
@@ -143,4 +143,19 @@ fn rows_are_few() {
     // A box that hides the mounts, seen from the side, and one beyond which they stand out.
     assert_eq!(["trot", "amble", "curvet"].map(|key| count(key, Some([0.5, 0.1, 0.4]))), [3, 6, 6]);
     assert_eq!(count("curvet", Some([0.3, 0.1, 0.4])), 8);
+}
+
+#[test]
+fn a_box_is_a_lever() {
+    let (mut robot, gait) = specification("curvet");
+    robot.platform.extent = Some(Extent { size: [0.4, 0.1, 0.3], centre: [0.0, 0.02, 0.0] });
+    let all = levers(&robot, &gait);
+    let slopes = |name: &str| -> Vec<f64> {
+        let lever = all.iter().find(|lever| lever.name == name).unwrap_or_else(|| panic!("no lever {name}"));
+        lever.slopes.iter().map(|(_, slope)| *slope).collect()
+    };
+    let halves = slopes("links.platform.extent.size.y");
+    assert!(halves.len() == 8 && halves.iter().all(|slope| slope.abs() == 0.5), "{halves:?}");
+    assert_eq!(slopes("links.platform.extent.centre.y"), [1.0; 8]);
+    assert_eq!(slopes("limits.body_clearance"), [1.0]);
 }

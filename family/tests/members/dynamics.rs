@@ -3,7 +3,7 @@
 use super::draws::{GENERAL, member};
 use super::kernels::{assert_close, filled, vector};
 use piaffe::model::Gait;
-use piaffe::verify::{impact::impact, multibody::Multibody, support::Support};
+use piaffe::verify::{impact::impact, instants::State, multibody::Multibody, support::Support};
 use piaffe_family::FAMILIES;
 
 const TOLERANCE: f64 = 1e-11;
@@ -57,6 +57,14 @@ fn single_support_agrees() {
             let expected = [&qdd[..], &torques, &force.as_slice()[..np]].concat();
             let found = filled(n + joints + np, |o| gait.inverse(leg, q, qd, &prescribed, o));
             assert_close("β̈, Γ, F", &found[np..], &expected, TOLERANCE);
+
+            let mut state = State { qdd: qdd.clone(), ..State::new(d) };
+            support.complete(&mut state);
+            let rows: Vec<f64> = d.lowest.iter().map(|point| state.heights[*point]).collect();
+            let found = filled(rows.len() * (1 + q.len()), |o| gait.heights(leg, q, o));
+            assert_close("heights", &found[..rows.len()], &rows, TOLERANCE);
+            let least = |list: &[f64]| [list.iter().copied().fold(f64::INFINITY, f64::min)];
+            assert_close("lowest", &least(&rows), &least(&state.heights), TOLERANCE);
         }
     });
 }
