@@ -112,7 +112,7 @@ impl Instants {
     }
 
     /// Jacobian of the `heights` kernel at a node: a row per point; columns q.
-    fn heights(&self, d: &Description, node: usize) -> &[f64] {
+    pub fn heights(&self, d: &Description, node: usize) -> &[f64] {
         let points = self.quantities.heights().len();
         let length = heights_length(d.orientations(), points);
         &self.heights[node * length..][..length][points..]

@@ -65,6 +65,9 @@ impl PhaseWork {
         beta += height * placement[2 * nc + nc * nq + nq + d.unactuated];
         beta += self.travel_weight(p, node) * placement[2 * nc + d.unactuated];
         beta += w[y.height()] * placement[2 * nc + nq + d.unactuated];
+        for (weight, row) in w[y.heights()].iter().zip(p.instants.heights(d, node).chunks(nq)) {
+            beta += weight * row[d.unactuated];
+        }
         [beta, betad, balance]
     }
 }
