@@ -135,6 +135,19 @@ fn what_a_sweep_says_follows_from_its_results() {
     assert_eq!(told("report", &[folder.path().into()]).0, 0);
 }
 
+/// At a greatest speed the active constraints nearly depend on each other, and multipliers are large.
+#[test]
+fn what_a_sweep_issues_at_the_greatest_speed_is_confirmed() {
+    let folder = tempfile::tempdir().unwrap();
+    run(folder.path(), &["--gait", "amble", "--criterion", "torque", "--speeds", "1.4", "--starts", "2"]);
+    let verify = Command::new(env!("CARGO_BIN_EXE_piaffe")).arg("verify").arg(folder.path()).output().unwrap();
+    let words = text(&verify.stdout);
+    assert!(verify.status.success() && words.matches(", confirmed").count() == 3, "{words}");
+    let results = contents(folder.path());
+    let optimal = results.values().filter(|lines| lines.iter().any(|line| line.contains(r#""status": "optimal""#)));
+    assert!(optimal.count() >= 2, "{:?}", results.keys());
+}
+
 #[test]
 fn speeds_that_differ_little_have_files_of_their_own() {
     let folder = tempfile::tempdir().unwrap();

@@ -3,6 +3,7 @@
 mod draws;
 
 use draws::{NEAR, member};
+use piaffe::audit::Audit;
 use piaffe::motion::Criterion;
 use piaffe::result::{GaitResult, Status};
 use piaffe::search::multi_start::{Settings, search};
@@ -10,6 +11,8 @@ use piaffe_family::FAMILIES;
 
 const ROBOTS: usize = 100;
 const SPEED: f64 = 0.6;
+/// Robots whose results are derived anew.
+const AUDITED: usize = 20;
 
 #[test]
 fn random_robots_trot_or_say_why_not() {
@@ -22,6 +25,10 @@ fn random_robots_trot_or_say_why_not() {
             let robot = member(family, &NEAR, &mut rng);
             let found = search(&*robot, criterion, SPEED, &settings, &|_| ());
             let result = GaitResult::new(&*robot, criterion, SPEED, &found, settings.seed, || 0.0);
+            if k < AUDITED {
+                let audit = Audit::of(&result, &[&*robot]);
+                assert!(result.variables.is_empty() || audit.is_confirmed(), "{k}: {:?}", audit.objection());
+            }
             match result.status {
                 Status::Optimal => costs.extend(result.cost),
                 Status::Infeasible if !result.conflicts.is_empty() => {

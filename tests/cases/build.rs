@@ -1,0 +1,3 @@
+fn main() {
+    piaffe_codegen::Config::new("model-spec").compile();
+}
