@@ -1,6 +1,6 @@
 //! Froude copies: a gait of a robot of the same shape and build, of another size and weight.
 
-use piaffe::model::{Body, Description, Gait};
+use piaffe::model::{Body, Description, Gait, Spot};
 
 /// By what factor each dimension grows; gravity stays.
 #[derive(Clone, Copy, Debug)]
@@ -66,14 +66,17 @@ impl<'a> Copy<'a> {
             b.mass *= by.mass;
             b.inertia = b.inertia.map(|row| row.map(|x| x * by.inertia()));
         };
+        let spot = |s: &mut Spot| s.at = s.at.map(|x| x * by.length);
         d.bodies.to_mut().iter_mut().for_each(body);
         for leg in &mut d.legs {
             leg.foot = leg.foot.map(|x| x * by.length);
             for member in leg.members.to_mut() {
                 member.bodies.to_mut().iter_mut().for_each(body);
                 member.foot = member.foot.map(|x| x * by.length);
+                member.spots.to_mut().iter_mut().for_each(spot);
             }
         }
+        d.corners.to_mut().iter_mut().for_each(spot);
         for joint in d.joints.to_mut() {
             joint.max_torque *= by.torque();
             joint.unloaded_speed *= by.rate();
@@ -84,6 +87,7 @@ impl<'a> Copy<'a> {
         d.limits.swing_clearance *= by.length;
         d.limits.half_step_duration = d.limits.half_step_duration.map(|t| t * by.time);
         d.limits.min_platform_height *= by.length;
+        d.limits.body_clearance *= by.length;
         Copy { gait, description: d, by }
     }
 
@@ -220,6 +224,16 @@ impl Gait for Copy<'_> {
     fn placement(&self, leg: usize, q: &[f64], out: &mut [f64]) {
         self.gait.placement(leg, q, out);
         scale(out, self.by.length);
+    }
+
+    fn heights(&self, leg: usize, q: &[f64], out: &mut [f64]) {
+        self.gait.heights(leg, q, out);
+        scale(out, self.by.length);
+    }
+
+    fn heights_curvature(&self, leg: usize, q: &[f64], weights: &[f64], out: &mut [f64]) {
+        let weights: Vec<f64> = weights.iter().map(|w| w * self.by.length).collect();
+        self.gait.heights_curvature(leg, q, &weights, out);
     }
 
     fn swing_velocity(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]) {
