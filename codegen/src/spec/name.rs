@@ -171,7 +171,7 @@ pub const WHOLE: &str = "whole";
 pub const FAMILIES_FOLDER: &str = "family";
 
 /// Modules and files beside those of gaits and robots.
-const MODULES: &[&str] = &["math", "gaits", "families"];
+const MODULES: &[&str] = &["math", "gaits", "families", "specification"];
 
 const LIBRARIES: &[&str] = &["std", "core", "alloc", "proc_macro", "piaffe"];
 
@@ -188,6 +188,8 @@ pub const ITEMS: &[&str] = &[
     "DESCRIPTION",
     "Energy",
     "Forward",
+    "Heights",
+    "HeightsCurvature",
     "Impact",
     "ImpactBoth",
     "InertiaAndBias",
@@ -233,7 +235,8 @@ mod tests {
         }
         let keywords = ["fn", "Fn", "FN", "SELF", "Self", "self_", "Self__", "dyn", "gen", "async"];
         let items = ["Option", "option", "some", "none", "ok", "t", "DESCRIPTION", "impact", "Inverse_Jacobian"];
-        let modules = ["Math", "gaits", "Families", "whole", "WHOLE2", "std", "core", "piaffe", "con", "LPT1"];
+        let modules =
+            ["Math", "gaits", "specification", "Families", "whole", "WHOLE2", "std", "core", "piaffe", "con", "LPT1"];
         for bad in keywords.iter().chain(&items).chain(&modules) {
             assert!(unusable_in_rust(bad).is_some(), "{bad}");
         }
