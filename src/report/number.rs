@@ -27,7 +27,7 @@ impl Number {
         let rounded: f64 = text.parse().unwrap_or(value);
         if (SMALLEST_DECIMAL..LARGEST_DECIMAL).contains(&rounded.abs()) {
             let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
-            return Number { decimal: signed(&format!("{rounded:.decimals$}")), power: None };
+            return Number { decimal: signed(&format!("{value:.decimals$}")), power: None };
         }
         Number { decimal: signed(mantissa), power: Some(exponent) }
     }

@@ -84,7 +84,7 @@ pub fn section(legs: &RealLegs, criterion: Criterion) -> Markup {
             (legs.equal_shares.support.words()) " in support and " (legs.equal_shares.impact.words_of_impact())
             " at an impact, the best shares " (legs.best_shares.support.words()) " and "
             (legs.best_shares.impact.words_of_impact()) "." }
-        p { "With the cheapest shares: " (legs.cost(criterion)) "; " (format!("{:.4}", legs.costs.proportional.of(criterion)))
+        p { "With the cheapest shares: " (legs.cost(criterion)) "; " (digits(legs.costs.proportional.of(criterion), 6))
             " if each foot pushes in proportion to its load." }
         @if legs.verdict() != Verdict::NoEquilibrium {
             ul { (worst("Least room in support", &legs.support)) (worst("Least room at an impact", &legs.impact)) }
