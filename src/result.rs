@@ -16,11 +16,15 @@ use crate::verdict::{self, Verdict};
 use crate::verify::{Finding, JointPeak, VerifyError, verify};
 use serde::{Deserialize, Serialize};
 
+/// Characters of a speed without an exponent.
+const LONGEST: usize = 24;
+
 /// The name of a file for the result of a gait (by its key): no two tasks share one, and those of a sweep stand in the order of
 /// their speeds.
 pub fn file_name(gait: &str, criterion: Criterion, speed: f64, real_legs: bool) -> String {
     let padded = format!("{speed:.4}");
-    let speed = if padded.parse() == Ok(speed) { padded } else { digits(speed) };
+    let exact = padded.len() <= LONGEST && padded.parse() == Ok(speed);
+    let speed = if exact { padded } else { digits(speed) };
     named(gait, criterion, &speed, real_legs) + ".json"
 }
 
@@ -32,7 +36,7 @@ fn named(gait: &str, criterion: Criterion, speed: &str, real_legs: bool) -> Stri
 /// All digits of a speed. Far from 1 m/s that would be hundreds of zeros.
 fn digits(speed: f64) -> String {
     let plain = speed.to_string();
-    if plain.len() > 24 { format!("{speed:e}") } else { plain }
+    if plain.len() > LONGEST { format!("{speed:e}") } else { plain }
 }
 
 /// How an optimization ended.

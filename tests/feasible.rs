@@ -48,7 +48,7 @@ fn whatever_is_minimized_a_bird_walks() {
         [(0.39, 16.38396), (0.40, 16.83274), (0.42, 17.7522), (0.45, 19.1850), (0.48, 20.6538), (0.51, 22.1090)]
     {
         let least = Criterion::ALL.map(|criterion| {
-            let result = optimize(&bird, criterion, speed, &FEW);
+            let result = optimize(&bird, criterion, speed, &Settings::default());
             assert_eq!(result.status, Status::Optimal, "{criterion:?} at {speed}: {}", result.message);
             let again = optimality(&bird, criterion, speed, &result.motion().unwrap()).unwrap();
             assert!(again.residual() < 1e-6, "{criterion:?} at {speed}: {again:?}");

@@ -178,7 +178,7 @@ fn damage_is_reported_and_repaired_from_the_journal() {
     let before = contents(folder.path());
     let file = folder.path().join("trot-torque-0.6000.json");
     let whole = std::fs::read_to_string(&file).unwrap();
-    std::fs::write(&file, &whole[..whole.len() / 2]).unwrap();
+    std::fs::write(&file, &whole[..whole.floor_char_boundary(whole.len() / 2)]).unwrap();
     std::fs::remove_file(folder.path().join("trot-torque-0.5000.json")).unwrap();
     let told = text(&run(folder.path(), &SMALL).stderr);
     assert!(told.contains("trot-torque-0.6000.json is damaged") && told.contains("line "), "{told}");
@@ -189,7 +189,7 @@ fn damage_is_reported_and_repaired_from_the_journal() {
     let journal = folder.path().join("journal.jsonl");
     let text_before = std::fs::read_to_string(&journal).unwrap();
     let mut lines: Vec<&str> = text_before.lines().collect();
-    let half = lines[1].len() / 2;
+    let half = lines[1].floor_char_boundary(lines[1].len() / 2);
     lines[1] = &lines[1][..half];
     std::fs::write(&journal, format!("{}\n{{\"step\":\"cut", lines.join("\n"))).unwrap();
     let told = text(&run(folder.path(), &SMALL).stderr);

@@ -61,19 +61,25 @@ pub fn least_torque(motors: &[Motor]) -> f64 {
     if stiffness > 0.0 { -sum(&|m| m.torque.at) / stiffness } else { 0.0 }
 }
 
-/// That at which Σ |Γ q̇| is least: where one of the torques vanishes.
+/// That at which Σ |Γ q̇| is least: between the two at which one of the torques vanishes and the slope changes its sign, and of all
+/// that cost the same the nearest to equal, so that it does not jump from instant to instant.
 pub fn least_energy(motors: &[Motor]) -> f64 {
+    /// Slopes that differ by this share of their sum cancel.
+    const SAME: f64 = 1e-9;
     let slope = |m: &Motor| (m.torque.slope[0] * m.rate).abs();
     let mut zeros: Vec<(f64, f64)> =
         motors.iter().filter(|m| slope(m) > 0.0).map(|m| (-m.torque.at / m.torque.slope[0], slope(m))).collect();
     zeros.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let half = 0.5 * zeros.iter().map(|(_, slope)| slope).sum::<f64>();
+    let total: f64 = zeros.iter().map(|(_, slope)| slope).sum();
     let mut passed = 0.0;
-    let median = zeros.iter().find(|(_, slope)| {
+    for (k, (zero, slope)) in zeros.iter().enumerate() {
         passed += slope;
-        passed >= half
-    });
-    median.map_or(0.0, |(zero, _)| *zero)
+        if 2.0 * passed >= (1.0 - SAME) * total {
+            let flat = zeros.get(k + 1).filter(|_| 2.0 * passed <= (1.0 + SAME) * total);
+            return 0.0_f64.clamp(*zero, flat.map_or(*zero, |(next, _)| *next));
+        }
+    }
+    0.0
 }
 
 impl RealCosts {
