@@ -192,15 +192,18 @@ fn an_amble_with_limits_at_real_legs_is_one_that_they_can_walk() {
         assert_eq!(real(&motion).verdict(), Verdict::UnequalShares);
         assert!(with.cost > without.cost.map(|c| 1.05 * c), "{:?} {:?}", with.cost, without.cost);
         // What was minimized, in the optimizer's formulas, is what the whole robot's equations say of its real joints.
-        let mut cycle = Cycle::resolving(&altered, criterion, 0.6, &theta(&motion)).unwrap();
+        // On a fine mesh: the optimizer's own sees the load of a foot that hardly presses to some 1e-4 of the criterion.
+        let mut cycle = Cycle::with_elements(&altered, criterion, 0.6, 40);
         cycle.simulate(&theta(&motion)).unwrap();
         let costs = real(&motion).costs;
         let minimized = cycle.costs().of(criterion);
         let [least, within, proportional, of_virtual] =
             [costs.least, costs.within_limits, costs.proportional, costs.virtual_legs].map(|costs| costs.of(criterion));
         println!("{criterion:?}: {minimized} {costs:?} {:?}", real(&free).costs);
-        assert!((proportional / minimized - 1.0).abs() < 1e-4, "{minimized} {proportional}");
-        assert!(of_virtual <= least * (1.0 + 1e-9) && least <= within && within <= proportional, "{costs:?}");
+        assert!((proportional / minimized - 1.0).abs() < 1e-5, "{minimized} {proportional}");
+        // Powers change their signs between the instants that are looked at, which are not the same for all ways.
+        let ordered = [of_virtual, least, within, proportional].is_sorted_by(|a, b| *a <= b * (1.0 + 1e-5));
+        assert!(ordered, "{costs:?}");
         assert!((with.cost.unwrap() / proportional - 1.0).abs() < 1e-9, "{:?} {proportional}", with.cost);
     }
 }
