@@ -30,6 +30,7 @@ pub mod sensitivity;
 pub mod sqp;
 pub mod stability;
 pub mod stance;
+pub mod standing;
 pub mod states;
 pub mod trajectory;
 pub mod units;

@@ -107,11 +107,12 @@ impl Config {
             let known = robots.iter().position(|robot| robot.module == *name && !name.is_empty());
             robots.remove(known.ok_or_else(|| format!("there is no robot `{name}` in {}", self.folder.display()))?);
         }
-        let mut files = match (&self.parameters[..], self.runtime.as_deref()) {
-            ([], runtime) => generate(&robots, runtime)?,
-            (parameters, Some(runtime)) => generate_families(&robots, parameters, runtime)?,
+        let files = match (&self.parameters[..], self.runtime.as_deref()) {
+            ([], runtime) => generate(&robots, runtime),
+            (parameters, Some(runtime)) => generate_families(&robots, parameters, runtime),
             (_, None) => return Err("a family of robots is no use without its runtime: drop functions_only()".into()),
         };
+        let mut files = files.map_err(|why| why + &how_to_set_aside(&self.folder, &robots))?;
         files.push(("specification.rs".into(), specification(&self.folder, &robots)));
         for (name, source) in files {
             write_if_changed(&out.join(&name), &source).map_err(|e| format!("cannot write {name}: {e}"))?;
@@ -144,6 +145,20 @@ fn sha256(files: &[&SpecFile]) -> String {
     hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
 }
 
+/// Of the further robots, those that keep all others from being built, and how to do without them.
+fn how_to_set_aside(folder: &Path, robots: &[RobotFiles]) -> String {
+    let mut advice = String::new();
+    for robot in robots.iter().filter(|robot| !robot.module.is_empty() && robots.len() > 1) {
+        if check(std::slice::from_ref(robot)).is_err() {
+            let path = folder.join(&robot.module).display().to_string();
+            advice += &format!(
+                "\n\nno robot is built as long as {path} has mistakes; to set it aside: mv {path}/robot.toml {path}/robot.toml.aside"
+            );
+        }
+    }
+    advice
+}
+
 /// The robots of a folder: its own first, then those of the folders in it, by name.
 fn robots(root: &Path, folder: &Path) -> Result<Vec<RobotFiles>, String> {
     let mut robots = Vec::new();
@@ -172,7 +187,11 @@ fn robot_files(root: &Path, folder: &Path, module: String) -> Result<RobotFiles,
         }
     }
     if files.is_empty() {
-        return Err(format!("there is no gait in {}: write one, for example {0}/trot.toml", gaits.display()));
+        return Err(format!(
+            "there is no gait in {}: write one, for example {0}/trot.toml; or set the robot aside: rename {}",
+            gaits.display(),
+            folder.join("robot.toml").display()
+        ));
     }
     Ok(RobotFiles { module, robot: read(root, &folder.join("robot.toml"))?, gaits: files })
 }
@@ -186,6 +205,26 @@ fn entries(root: &Path, folder: &Path) -> Result<Vec<PathBuf>, String> {
     }
     entries.sort();
     Ok(entries)
+}
+
+impl RobotFiles {
+    /// Reads a robot's folder: `robot.toml` and `gaits/*.toml`. Its module is called like the folder.
+    ///
+    /// # Errors
+    /// What is missing or cannot be read.
+    pub fn read(folder: &Path) -> Result<RobotFiles, String> {
+        let name =
+            std::path::absolute(folder).ok().and_then(|path| Some(path.file_name()?.to_string_lossy().into_owned()));
+        robot_files(Path::new(""), folder, name.unwrap_or_default())
+    }
+}
+
+/// What [`generate`] says of specifications before it derives anything: in milliseconds.
+///
+/// # Errors
+/// The rendered diagnostics, if the specification has mistakes.
+pub fn check(robots: &[RobotFiles]) -> Result<(), String> {
+    parse(robots).map(|_| ())
 }
 
 /// The whole of code generation as a pure function: specification texts → source files.
@@ -374,4 +413,19 @@ fn write_if_changed(path: &Path, contents: &str) -> io::Result<()> {
     }
     path.parent().map_or(Ok(()), fs::create_dir_all)?;
     fs::write(path, contents)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_robot_that_is_in_the_way_is_named_with_how_to_do_without_it() {
+        let file = |text: &str| SpecFile { path: "robot.toml".into(), text: text.into() };
+        let robot = |module: &str| RobotFiles { module: module.into(), robot: file("name = 1"), gaits: Vec::new() };
+        let folder = Path::new("model-spec");
+        let advice = how_to_set_aside(folder, &[robot(""), robot("dog")]);
+        assert!(advice.contains("mv model-spec/dog/robot.toml model-spec/dog/robot.toml.aside"), "{advice}");
+        assert_eq!(how_to_set_aside(folder, &[robot("dog")]), "");
+    }
 }

@@ -1,6 +1,7 @@
 //! `piaffe`: what a person types, and what comes back.
 
 mod built;
+mod check;
 mod digits;
 mod document;
 mod dynamics;
@@ -67,6 +68,16 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Say what a build would say of a robot's folder, at once, and draw the robot as it stands.
+    #[command(after_help = "Example:\n  piaffe check model-spec/a1 --svg a1.svg")]
+    Check {
+        /// The folder with robot.toml and gaits/.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+        /// Draw the robot, standing, from its right and from behind.
+        #[arg(long, value_name = "FILE")]
+        svg: Option<PathBuf>,
+    },
     /// Evaluate the generated dynamics at given states.
     #[command(
         after_help = "Example:\n  echo '{\"states\":[{\"X\":[0,0.28,0.4,-0.8,0.1,-0.5],\"Xdot\":[0,0,1,0,0,0]}]}' | piaffe dynamics trot -"
@@ -90,21 +101,14 @@ enum Command {
         #[arg(long, value_name = "FILE|-")]
         json: Option<String>,
     },
-    /// Write a specification from a URDF: robot.toml and a gait to begin with.
+    /// Write a specification from a URDF or MJCF: robot.toml and gaits to begin with.
     ///
-    /// Says what it took, what it assumed and what it dropped. Legs are chains of revolute joints.
-    #[command(after_help = "Example:\n  piaffe import a1.urdf --out model-spec/a1")]
-    Import {
-        /// The URDF; `-` reads standard input.
-        #[arg(value_name = "FILE|-")]
-        file: PathBuf,
-        /// Folder for the specification; model-spec/ with the robot's name if it is not given.
-        #[arg(long = "out", value_name = "DIR")]
-        folder: Option<PathBuf>,
-        /// Joint that is no part of a leg and is held still; may be given several times.
-        #[arg(long, value_name = "JOINT")]
-        lock: Vec<String>,
-    },
+    /// What is written builds, or everything that is in the way is said, each with what to do. Says what it took, what it
+    /// assumed and what it dropped. Legs are chains of revolute joints that can reach the ground.
+    #[command(
+        after_help = "Examples:\n  piaffe import a1.urdf --out model-spec/a1\n  piaffe import dog.xml --velocity 20 --lock 'arm_*' --lock tail=0.3"
+    )]
+    Import(import::Arguments),
     /// Find the optimal periodic motion of a gait at a mean speed.
     #[command(after_help = "Example:\n  piaffe optimize trot --criterion energy --speed 0.6 --json trot.json")]
     Optimize {
@@ -251,7 +255,9 @@ impl Arguments {
             Some(Command::Verify { .. } | Command::Report { .. } | Command::Export { .. } | Command::Lift { .. }) => {
                 built::note_of_all()
             }
-            Some(Command::Import { .. } | Command::Completions { .. } | Command::Manual { .. }) => {}
+            Some(
+                Command::Import { .. } | Command::Check { .. } | Command::Completions { .. } | Command::Manual { .. },
+            ) => {}
         }
     }
 }
@@ -281,9 +287,10 @@ pub fn run() -> ExitCode {
         if matches!(arguments.command, Some(Command::Verify { .. })) { NOT_CONFIRMED } else { NO_OPTIMUM };
     let outcome = match arguments.command {
         None => main_job::run(&arguments.out),
+        Some(Command::Check { folder, svg }) => check::run(&folder, svg.as_deref()),
         Some(Command::Dynamics { gait, file }) => dynamics::run(by_name(&gait), &file),
         Some(Command::Model { gait, latex, json }) => model::run(by_name(&gait), latex, json.as_deref()),
-        Some(Command::Import { file, folder, lock }) => import::run(&file, folder, lock),
+        Some(Command::Import(arguments)) => import::run(arguments),
         Some(Command::Optimize { gait, criterion, speed, seed, real_legs, starts, json }) => {
             let settings = piaffe::search::multi_start::Settings { starts: starts.map(|n| n as usize), seed };
             let task = Task { gait: by_name(&gait), criterion: criterion_by_name(&criterion), speed };

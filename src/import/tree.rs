@@ -1,210 +1,183 @@
-//! The links of a URDF as bodies that move against each other: links on fixed and locked joints are part of
-//! the body that carries them.
+//! The links of a file as bodies that move against each other: links on fixed and held joints are part of the body that
+//! carries them. In the specification's axes: x forward, y up, z to the right.
 
-use super::{ImportError, Options, Rigid, axes};
-use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
+use super::Rigid;
+use super::fault::{Faults, Kind};
+use super::model::{Model, Shape};
+use nalgebra::{Isometry3, Matrix3, Translation3, Unit, UnitQuaternion, Vector3};
 use std::collections::BTreeMap;
-use urdf_rs::{JointType, Pose, Robot};
 
 /// The bodies, parents before children; the first one is the root.
+#[derive(Debug)]
 pub struct Tree {
     pub bodies: Vec<Body>,
-    /// What was made of the file, a sentence each.
-    pub notes: Vec<String>,
-    /// Joints with damping or friction.
-    damped: usize,
 }
 
 /// What moves as one.
+#[derive(Debug)]
 pub struct Body {
-    /// Name of the link on which the joint acts.
-    pub name: String,
+    /// The link on which the joint acts.
+    pub link: usize,
     pub parent: Option<usize>,
     /// `None` for the root.
-    pub joint: Option<Joint>,
-    /// Its joint, all joints at zero, in the specification's axes from the root's origin, m.
+    pub joint: Option<Moving>,
+    /// Its joint, all joints at zero, from the root's origin, m.
     pub origin: Vector3<f64>,
     pub rigid: Rigid,
-    /// Links that it carries on fixed joints: name and place, m.
-    pub carried: Vec<(String, Vector3<f64>)>,
+    /// Links that it carries, its own first, with what of them can touch the ground.
+    pub carried: Vec<Carried>,
 }
 
-/// A joint that moves, in the specification's sense of rotation.
-pub struct Joint {
-    pub name: String,
-    /// 0, 1, 2: roll, yaw, pitch.
-    pub axis: usize,
-    /// −1 where the specification's angle is the negative of URDF's.
-    pub sign: f64,
-    pub range: [f64; 2],
-    /// N·m and rad/s at the joint.
-    pub effort: f64,
-    pub velocity: f64,
+/// A link on a body: its frame and shapes in the specification's axes from the root's origin.
+#[derive(Debug)]
+pub struct Carried {
+    pub link: usize,
+    pub frame: Isometry3<f64>,
+    pub shapes: Vec<Shape>,
+}
+
+/// A joint that moves.
+#[derive(Debug)]
+pub struct Moving {
+    pub joint: usize,
+    /// Of unit length.
+    pub axis: Vector3<f64>,
+}
+
+/// Joints that are held, by their index, at angles of the file, rad.
+pub type Held = BTreeMap<usize, f64>;
+
+/// Which links hang on which: the root, and the joints below every link.
+pub struct Skeleton {
+    pub root: usize,
+    pub below: Vec<Vec<usize>>,
+}
+
+impl Skeleton {
+    /// Checks that the links form one tree.
+    pub fn new(model: &Model, faults: &mut Faults) -> Option<Skeleton> {
+        let mut above: Vec<Option<usize>> = vec![None; model.links.len()];
+        let mut below = vec![Vec::new(); model.links.len()];
+        for (k, joint) in model.joints.iter().enumerate() {
+            if let Some(first) = above[joint.child].replace(k) {
+                let what = format!(
+                    "link `{}` hangs on this joint and on `{}`",
+                    model.links[joint.child].name, model.joints[first].name
+                );
+                let remedy = "let each link be the child of one joint: a loop of links cannot be described";
+                faults.add(Kind::Loop, Some(&joint.place), what, remedy);
+                continue;
+            }
+            below[joint.parent].push(k);
+        }
+        let roots: Vec<usize> = (0..model.links.len()).filter(|l| above[*l].is_none()).collect();
+        // Links that nothing hangs on and that hang on nothing are left over from editing.
+        let used: Vec<usize> = roots.iter().copied().filter(|l| !below[*l].is_empty()).collect();
+        let root = match used[..] {
+            [root] => root,
+            [] if model.links.is_empty() => {
+                faults.add(Kind::NotATree, None, "the file has no <link>", "give the URDF of a whole robot");
+                return None;
+            }
+            [] => {
+                let place = &model.links[0].place;
+                let remedy = "let one link, the trunk, be no joint's child";
+                faults.add(Kind::NotATree, Some(place), "no link is the root: there is no joint, or a circle", remedy);
+                return None;
+            }
+            ref several => {
+                let names: Vec<String> = several.iter().map(|l| format!("`{}`", model.links[*l].name)).collect();
+                let what = format!("{} links carry others and hang on no joint: {}", names.len(), names.join(", "));
+                let place = &model.links[several[1]].place;
+                faults.add(Kind::NotATree, Some(place), what, "put them on one trunk with joints of type fixed");
+                return None;
+            }
+        };
+        let mut seen = vec![false; model.links.len()];
+        let mut open = vec![root];
+        while let Some(link) = open.pop() {
+            seen[link] = true;
+            open.extend(below[link].iter().map(|j| model.joints[*j].child));
+        }
+        let alone = |l: usize| above[l].is_none() && below[l].is_empty();
+        if let Some(link) = (0..seen.len()).find(|l| !seen[*l] && !alone(*l)) {
+            let place = &model.links[link].place;
+            let what = "this link hangs on itself, over others";
+            faults.add(Kind::NotATree, Some(place), what, "let the chain begin at the trunk");
+            return None;
+        }
+        faults.is_empty().then_some(Skeleton { root, below })
+    }
 }
 
 impl Tree {
-    pub fn new(robot: &Robot, options: &Options) -> Result<Tree, ImportError> {
-        let names: BTreeMap<&str, usize> = robot.links.iter().enumerate().map(|(i, l)| (l.name.as_str(), i)).collect();
-        if names.len() < robot.links.len() {
-            return Err(ImportError::NotATree("two links have the same name".into()));
-        }
-        if let Some(lock) = options.locked.iter().find(|l| robot.joints.iter().all(|j| j.name != **l)) {
-            return Err(ImportError::NoSuchJoint(lock.clone()));
-        }
-        let mut above: Vec<Option<usize>> = vec![None; robot.links.len()];
-        for (k, joint) in robot.joints.iter().enumerate() {
-            for link in [&joint.parent.link, &joint.child.link] {
-                if !names.contains_key(link.as_str()) {
-                    return Err(ImportError::NoSuchLink { joint: joint.name.clone(), link: link.clone() });
-                }
+    /// `axes` turns from the file's axes to the specification's. Joints of a kind that cannot move are taken as fixed.
+    pub fn new(model: &Model, skeleton: &Skeleton, held: &Held, axes: &UnitQuaternion<f64>) -> Tree {
+        let mut tree = Tree { bodies: vec![Body::new(skeleton.root, None, None, Vector3::zeros())] };
+        let start = Isometry3::from_parts(Translation3::identity(), *axes);
+        let mut open = vec![(skeleton.root, 0, start)];
+        while let Some((link, body, frame)) = open.pop() {
+            tree.bodies[body].take(model, link, &frame);
+            let mut next = Vec::new();
+            for index in &skeleton.below[link] {
+                let joint = &model.joints[*index];
+                let at = frame * joint.frame;
+                let axis = Unit::try_new(joint.axis, 1e-9);
+                let turn = |angle: f64| {
+                    axis.map_or(UnitQuaternion::identity(), |axis| UnitQuaternion::from_axis_angle(&axis, angle))
+                };
+                let offset = Translation3::from(joint.offset);
+                next.push(match (held.get(index), axis) {
+                    (None, Some(axis)) if joint.turns() => {
+                        let moving = Moving { joint: *index, axis: at.rotation * axis.into_inner() };
+                        tree.bodies.push(Body::new(joint.child, Some(body), Some(moving), at.translation.vector));
+                        (joint.child, tree.bodies.len() - 1, at * offset)
+                    }
+                    (angle, _) => (joint.child, body, at * turn(angle.copied().unwrap_or(0.0)) * offset),
+                });
             }
-            if above[names[joint.child.link.as_str()]].replace(k).is_some() {
-                return Err(ImportError::NotATree(format!("link `{}` hangs on two joints", joint.child.link)));
-            }
+            next.reverse();
+            open.extend(next);
         }
-        let roots: Vec<&str> =
-            robot.links.iter().zip(&above).filter(|(_, a)| a.is_none()).map(|(l, _)| l.name.as_str()).collect();
-        let [root] = roots[..] else {
-            return Err(ImportError::NotATree(format!("{} links hang on no joint: {}", roots.len(), roots.join(", "))));
-        };
-        let mut tree = Tree { bodies: Vec::new(), notes: Vec::new(), damped: 0 };
-        tree.bodies.push(Body::new(root, None, None, Vector3::zeros()));
-        let placed = tree.add(robot, options, &names, names[root], 0, &Isometry3::identity())?;
-        if placed < robot.links.len() {
-            return Err(ImportError::NotATree("some links hang on each other in a circle".into()));
-        }
-        if tree.damped > 0 {
-            tree.notes.push(format!("damping and friction are dropped, of {} joints", tree.damped));
-        }
-        Ok(tree)
+        tree
     }
 
-    /// Adds a link, and all that hangs on it, to `body`; returns how many links these are.
-    fn add(
-        &mut self,
-        robot: &Robot,
-        options: &Options,
-        names: &BTreeMap<&str, usize>,
-        link: usize,
-        body: usize,
-        at: &Isometry3<f64>,
-    ) -> Result<usize, ImportError> {
-        let link = &robot.links[link];
-        self.bodies[body].rigid = self.bodies[body].rigid.with(&rigid(link, at)?);
-        let mut placed = 1;
-        for joint in robot.joints.iter().filter(|j| j.parent.link == link.name) {
-            let child = names[joint.child.link.as_str()];
-            let frame = at * isometry(&joint.origin);
-            let locked = options.locked.contains(&joint.name);
-            let rides = is_free(&joint.joint_type) && body == 0 && self.bodies[0].rigid.mass == 0.0;
-            if locked && moves(&joint.joint_type) {
-                let angle = 0.0f64.max(joint.limit.lower).min(joint.limit.upper.max(joint.limit.lower));
-                let angle = if joint.joint_type == JointType::Continuous { 0.0 } else { angle };
-                self.notes.push(format!("`{}` is locked at {angle} rad (URDF's angle)", joint.name));
-                let axis = nalgebra::Unit::try_new(Vector3::from(*joint.axis.xyz), 1e-9).unwrap_or(Vector3::x_axis());
-                let frame = frame * UnitQuaternion::from_axis_angle(&axis, angle);
-                placed += self.add(robot, options, names, child, body, &frame)?;
-            } else if locked || rides || joint.joint_type == JointType::Fixed {
-                if joint.joint_type != JointType::Fixed {
-                    self.notes.push(format!("`{}` ({:?}) is taken as fixed", joint.name, joint.joint_type));
-                }
-                let place = axes() * frame.translation.vector;
-                self.bodies[body].carried.push((joint.child.link.clone(), place));
-                placed += self.add(robot, options, names, child, body, &frame)?;
-            } else {
-                let moving = self.joint(joint, &frame)?;
-                self.bodies.push(Body::new(
-                    &joint.child.link,
-                    Some(body),
-                    Some(moving),
-                    axes() * frame.translation.vector,
-                ));
-                let next = self.bodies.len() - 1;
-                placed += self.add(robot, options, names, child, next, &frame)?;
-            }
-        }
-        Ok(placed)
+    /// The bodies that hang on a body.
+    pub fn below(&self, body: usize) -> impl Iterator<Item = usize> + '_ {
+        (0..self.bodies.len()).filter(move |b| self.bodies[*b].parent == Some(body))
     }
 
-    fn joint(&mut self, joint: &urdf_rs::Joint, frame: &Isometry3<f64>) -> Result<Joint, ImportError> {
-        let name = joint.name.clone();
-        if !moves(&joint.joint_type) {
-            return Err(ImportError::NotRevolute {
-                joint: name,
-                kind: format!("{:?}", joint.joint_type).to_lowercase(),
-            });
+    /// The bodies from the root's child down to this one.
+    pub fn path(&self, body: usize) -> Vec<usize> {
+        let mut path = Vec::new();
+        let mut here = body;
+        while let Some(parent) = self.bodies[here].parent {
+            path.push(here);
+            here = parent;
         }
-        if joint.mimic.is_some() {
-            return Err(ImportError::Mimic(name));
-        }
-        let direction = (axes() * (frame.rotation * Vector3::from(*joint.axis.xyz))).normalize();
-        let Some(axis) = (0..3).find(|k| direction[*k].abs() > 1.0 - 1e-6) else {
-            return Err(ImportError::ObliqueAxis { joint: name, axis: direction.into() });
-        };
-        let sign = direction[axis].signum();
-        let limit = &joint.limit;
-        for (what, value) in [("effort", limit.effort), ("velocity", limit.velocity)] {
-            if !(value > 0.0 && value.is_finite()) {
-                return Err(ImportError::NoLimit { joint: name, what });
-            }
-        }
-        let turn = std::f64::consts::TAU;
-        let range = if joint.joint_type == JointType::Continuous {
-            self.notes.push(format!("`{name}` is continuous: it may turn once to either side"));
-            [-turn, turn]
-        } else {
-            if limit.lower >= limit.upper {
-                return Err(ImportError::NoLimit { joint: name, what: "range (lower < upper)" });
-            }
-            if limit.lower < -turn || limit.upper > turn {
-                self.notes.push(format!("the range of `{name}` is cut to one turn to either side"));
-            }
-            [limit.lower.max(-turn), limit.upper.min(turn)]
-        };
-        let range = if sign < 0.0 { [0.0 - range[1], 0.0 - range[0]] } else { range };
-        if joint.dynamics.as_ref().is_some_and(|d| d.damping != 0.0 || d.friction != 0.0) {
-            self.damped += 1;
-        }
-        Ok(Joint { name, axis, sign, range, effort: limit.effort, velocity: limit.velocity })
+        path.reverse();
+        path
     }
 }
 
 impl Body {
-    fn new(name: &str, parent: Option<usize>, joint: Option<Joint>, origin: Vector3<f64>) -> Body {
-        Body { name: name.into(), parent, joint, origin, rigid: Rigid::NOTHING, carried: Vec::new() }
+    fn new(link: usize, parent: Option<usize>, joint: Option<Moving>, origin: Vector3<f64>) -> Body {
+        Body { link, parent, joint, origin, rigid: Rigid::NOTHING, carried: Vec::new() }
     }
-}
 
-fn moves(kind: &JointType) -> bool {
-    matches!(kind, JointType::Revolute | JointType::Continuous)
-}
-
-/// Joints by which a model is put into a world.
-fn is_free(kind: &JointType) -> bool {
-    matches!(kind, JointType::Floating | JointType::Planar)
-}
-
-fn isometry(pose: &Pose) -> Isometry3<f64> {
-    let [x, y, z] = *pose.xyz;
-    let [roll, pitch, yaw] = *pose.rpy;
-    Isometry3::from_parts(Translation3::new(x, y, z), UnitQuaternion::from_euler_angles(roll, pitch, yaw))
-}
-
-/// The link's own mass, in the specification's axes from the root's origin.
-fn rigid(link: &urdf_rs::Link, at: &Isometry3<f64>) -> Result<Rigid, ImportError> {
-    let inertial = &link.inertial;
-    let i = &inertial.inertia;
-    let numbers = [inertial.mass.value, i.ixx, i.ixy, i.ixz, i.iyy, i.iyz, i.izz];
-    let named = ["mass", "ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
-    if let Some((_, what)) = numbers.iter().zip(named).find(|(x, _)| !x.is_finite()) {
-        return Err(ImportError::NotFinite(what, link.name.clone()));
+    fn take(&mut self, model: &Model, link: usize, frame: &Isometry3<f64>) {
+        let source = &model.links[link];
+        for mass in &source.masses {
+            let at = frame * mass.frame;
+            let rotation = at.rotation.to_rotation_matrix();
+            let rotation: &Matrix3<f64> = rotation.matrix();
+            self.rigid = self.rigid.with(&Rigid {
+                mass: mass.mass,
+                com: at.translation.vector,
+                inertia: rotation * mass.inertia * rotation.transpose(),
+            });
+        }
+        let shapes = source.shapes.iter().map(|s| Shape { frame: frame * s.frame, solid: s.solid });
+        self.carried.push(Carried { link, frame: *frame, shapes: shapes.collect() });
     }
-    let frame = at * isometry(&inertial.origin);
-    let rotation = axes() * frame.rotation.to_rotation_matrix().matrix();
-    let tensor = Matrix3::new(i.ixx, i.ixy, i.ixz, i.ixy, i.iyy, i.iyz, i.ixz, i.iyz, i.izz);
-    Ok(Rigid {
-        mass: inertial.mass.value,
-        com: axes() * frame.translation.vector,
-        inertia: rotation * tensor * rotation.transpose(),
-    })
 }

@@ -1,68 +1,64 @@
 //! The specification's text.
 
-use super::legs::{Leg, identifier};
-use super::tree::{Body, Tree};
-use super::{Import, Rigid};
+use super::Rigid;
+use super::model::Format;
+use super::robot::{Joint, Leg, Motor, Robot};
+use super::words::identifier;
 use nalgebra::Vector3;
 use std::fmt::Write;
 
 const AXES: [&str; 3] = ["roll", "yaw", "pitch"];
 
-pub fn specification(name: &str, tree: &Tree, legs: &[Leg]) -> Import {
-    let mut notes = tree.notes.clone();
-    notes.insert(0, "visual and collision geometry is dropped".into());
-    notes.push("gears are taken to be 1, so that torques and speeds are the joints'; rotor inertias to be 0".into());
-    notes.push("the greatest torque is taken to be there at any speed: URDF knows no line between them".into());
-    for leg in legs {
-        notes.push(format!("leg `{}` ends in a point: the origin of link `{}`", leg.name, leg.foot_link));
-    }
+/// `robot.toml`, with `notes` in its head.
+pub fn robot(robot: &Robot, format: Format, notes: &[String]) -> String {
     let mut out = String::from("#:schema ../schema/robot.schema.json\n");
+    let name = &robot.name;
+    let file = format.name();
     put(
         &mut out,
         &format!(
-            "# Imported from the URDF of \"{}\". Axes: x forward, y up, z to the right. Angles are URDF's,",
-            plain(name)
+            "# Imported from the {file} of \"{name}\". Axes: x forward, y up, z to the right. Angles are those of"
         ),
     );
-    put(&mut out, "# with the opposite sign where the axis is said to be turned round.");
+    put(&mut out, "# the file, with the opposite sign where the axis is said to be turned round.");
     put(&mut out, "#");
-    for note in &notes {
+    for note in notes {
         put(&mut out, &format!("# - {note}"));
     }
-    put(&mut out, &format!("\nname = \"{}\"\ngravity = 9.81                    # m/s²; assumed", plain(name)));
-    let platform = &tree.bodies[0];
-    put(&mut out, &format!("\n[links.{}]", identifier(&platform.name)));
-    inertial(&mut out, &platform.rigid, &Vector3::zeros(), ["roll", "yaw", "pitch"], "");
-    for leg in legs {
-        for (depth, b) in leg.chain.iter().enumerate() {
-            let body = &tree.bodies[*b];
-            let end = leg.chain.get(depth + 1).map_or(leg.foot, |next| tree.bodies[*next].origin) - body.origin;
-            put(&mut out, &format!("\n[links.{}]", identifier(&body.name)));
-            let length = format!(
-                "length = {}  # m, to the {}\n",
-                vector(&end),
-                if depth + 1 < leg.chain.len() { "next joint" } else { "foot" }
-            );
-            inertial(&mut out, &body.rigid, &body.origin, ["lateral", "axial", "swing"], &length);
+    put(&mut out, &format!("\nname = \"{name}\"\ngravity = 9.81                    # m/s²; assumed"));
+    put(&mut out, &format!("\n[links.{}]", robot.platform_name));
+    inertial(&mut out, &robot.platform, ["roll", "yaw", "pitch"], "");
+    for leg in &robot.legs {
+        for (depth, segment) in leg.segments.iter().enumerate() {
+            put(&mut out, &format!("\n[links.{}]", segment.link.name));
+            let to = if depth + 1 < leg.segments.len() { "next joint" } else { "foot" };
+            let length = format!("length = {}  # m, to the {to}\n", vector(&segment.link.end));
+            inertial(&mut out, &segment.link.rigid, ["lateral", "axial", "swing"], &length);
         }
     }
-    for body in &tree.bodies {
-        joint(&mut out, tree, body);
+    let motors = Motors::of(robot);
+    for leg in &robot.legs {
+        joints(&mut out, leg, &robot.platform_name, &motors);
     }
     put(&mut out, "\n[legs]");
-    for leg in legs {
-        let first = &tree.bodies[leg.chain[0]];
-        let joint = first.joint.as_ref().map(|j| identifier(&j.name)).unwrap_or_default();
-        put(&mut out, &format!("{} = {{ mount = {}, first_joint = \"{joint}\" }}", leg.name, vector(&first.origin)));
+    for leg in &robot.legs {
+        let first = leg.segments.first().map(|s| s.joint.name.as_str()).unwrap_or_default();
+        put(&mut out, &format!("{} = {{ mount = {}, first_joint = \"{first}\" }}", leg.name, vector(&leg.mount)));
     }
-    actuators(&mut out, tree);
-    let gaits = gaits(tree, legs);
-    if gaits.is_empty() {
-        notes.push("which legs move together is not evident: write a gait".into());
+    motors.write(&mut out);
+    out
+}
+
+/// The robot's name as a folder's name, none of those that the folder has for other things.
+pub fn folder(name: &str) -> String {
+    let name = identifier(name).to_lowercase();
+    // Folders and modules that are there already, and gaits that robots without a folder have.
+    let taken = ["gaits", "schema", "trot", "amble", "curvet", "bound", "walk"];
+    if taken.contains(&name.as_str()) || piaffe_codegen::spec::unusable_as_folder(&name).is_some() {
+        format!("{name}_robot")
     } else {
-        notes.push("the limits of the gaits (friction, clearance, durations) are assumed".into());
+        name
     }
-    Import { folder: identifier(name).to_lowercase(), robot: out, gaits, notes }
 }
 
 fn put(out: &mut String, line: &str) {
@@ -70,12 +66,8 @@ fn put(out: &mut String, line: &str) {
     out.push('\n');
 }
 
-fn plain(name: &str) -> String {
-    name.chars().map(|c| if c.is_control() || matches!(c, '"' | '\\') { '_' } else { c }).collect()
-}
-
 /// Twelve significant digits: beyond any data sheet, and free of the noise of sums.
-fn number(x: f64) -> String {
+pub fn number(x: f64) -> String {
     let rounded: f64 = format!("{x:.11e}").parse().unwrap_or(x);
     if rounded.abs() < 1e-15 { "0.0".into() } else { format!("{rounded:?}") }
 }
@@ -84,14 +76,9 @@ fn vector(v: &Vector3<f64>) -> String {
     format!("[{}, {}, {}]", number(v.x), number(v.y), number(v.z))
 }
 
-fn inertial(out: &mut String, body: &Rigid, origin: &Vector3<f64>, keys: [&str; 3], length: &str) {
+fn inertial(out: &mut String, body: &Rigid, keys: [&str; 3], length: &str) {
     let i = &body.inertia;
-    let _ = write!(
-        out,
-        "mass = {}  # kg\n{length}com = {}  # m\ninertia = {{ ",
-        number(body.mass),
-        vector(&(body.com - origin))
-    );
+    let _ = write!(out, "mass = {}  # kg\n{length}com = {}  # m\ninertia = {{ ", number(body.mass), vector(&body.com));
     for (k, key) in keys.iter().enumerate() {
         let _ = write!(out, "{key} = {}, ", number(i[(k, k)]));
     }
@@ -100,106 +87,66 @@ fn inertial(out: &mut String, body: &Rigid, origin: &Vector3<f64>, keys: [&str; 
     put(out, &format!("products = {} }}  # kg·m²", vector(&products)));
 }
 
-fn joint(out: &mut String, tree: &Tree, body: &Body) {
-    let (Some(joint), Some(parent)) = (&body.joint, body.parent) else { return };
-    let name = identifier(&joint.name);
-    let turned = if joint.sign < 0.0 { "  # turned round: the angle is minus URDF's" } else { "" };
-    put(out, &format!("\n[joints.{name}]"));
-    put(
-        out,
-        &format!("parent = \"{}\"\nchild = \"{}\"", identifier(&tree.bodies[parent].name), identifier(&body.name)),
-    );
-    put(out, &format!("axis = \"{}\"{turned}", AXES[joint.axis]));
-    put(out, &format!("range = [{}, {}]  # rad", number(joint.range[0]), number(joint.range[1])));
-    put(out, &format!("actuator = \"{}\"", motor(tree, joint.effort, joint.velocity)));
-}
-
-/// Joints with the same limits share a motor.
-fn motor(tree: &Tree, effort: f64, velocity: f64) -> String {
-    let all = motors(tree);
-    let index = all.iter().position(|m| *m == (effort, velocity)).unwrap_or_default();
-    if all.len() == 1 { "motor".into() } else { format!("motor{}", index + 1) }
-}
-
-fn motors(tree: &Tree) -> Vec<(f64, f64)> {
-    let mut all = Vec::new();
-    for joint in tree.bodies.iter().filter_map(|b| b.joint.as_ref()) {
-        if !all.contains(&(joint.effort, joint.velocity)) {
-            all.push((joint.effort, joint.velocity));
-        }
-    }
-    all
-}
-
-fn actuators(out: &mut String, tree: &Tree) {
-    for (effort, velocity) in motors(tree) {
-        let speed = number(velocity * 60.0 / std::f64::consts::TAU);
-        put(out, &format!("\n[actuators.{}]", motor(tree, effort, velocity)));
-        put(out, "gear = 1.0                        # assumed");
-        put(out, &format!("max_torque = {}  # N·m", number(effort)));
-        put(
-            out,
-            &format!(
-                "max_speed = {{ unloaded = {speed}, at_max_torque = {speed} }}  # rev/min: {} rad/s",
-                number(velocity)
-            ),
-        );
-        put(out, "rotor_inertia = 0.0               # kg·m²; assumed");
+fn joints(out: &mut String, leg: &Leg, platform: &str, motors: &Motors) {
+    let mut parent = platform;
+    for segment in &leg.segments {
+        let Joint { name, axis, sign, range, motor } = &segment.joint;
+        let turned = if *sign < 0.0 { "  # turned round: the angle is minus the file's" } else { "" };
+        put(out, &format!("\n[joints.{name}]"));
+        put(out, &format!("parent = \"{parent}\"\nchild = \"{}\"", segment.link.name));
+        put(out, &format!("axis = \"{}\"{turned}", AXES[*axis]));
+        put(out, &format!("range = [{}, {}]  # rad", number(range[0]), number(range[1])));
+        put(out, &format!("actuator = \"{}\"", motors.name(motor)));
+        parent = &segment.link.name;
     }
 }
 
-/// A trot for four legs, a walk for two; what leaves their plane is locked.
-fn gaits(tree: &Tree, legs: &[Leg]) -> Vec<(String, String)> {
-    let joint = |b: &usize| tree.bodies[*b].joint.as_ref();
-    let aside: Vec<String> = legs
-        .iter()
-        .flat_map(|leg| leg.chain.iter().filter_map(joint))
-        .filter(|j| j.axis != 2)
-        .map(|j| format!("{} = 0.0", identifier(&j.name)))
-        .collect();
-    let locked = if aside.is_empty() { String::new() } else { format!("locked = {{ {} }}\n", aside.join(", ")) };
-    let mount = |leg: &Leg| tree.bodies[leg.chain[0]].origin;
-    let reach = legs.iter().map(|l| (l.foot - mount(l)).norm()).fold(0.0, f64::max);
-    let weight = 9.81 * tree.bodies.iter().map(|b| b.rigid.mass).sum::<f64>();
-    let limits = format!(
-        "\n[limits]                                  # all assumed\nfriction = 0.6                            # tangential / vertical force\n\
-         min_vertical_force = {}                 # N\nswing_clearance = {}                   # m\nhalf_step_duration = [0.05, 2.0]          # s\n",
-        number((0.05 * weight).round()),
-        number((0.05 * reach * 1000.0).round() / 1000.0)
-    );
-    let schema = "#:schema ../../schema/gait.schema.json\n";
-    match legs {
-        [a, b] => {
-            let text = format!(
-                "{schema}# Walking: one leg after the other; the platform pitches.\n\nvirtual_legs = [[\"{}\"], [\"{}\"]]\n{locked}\
-                 platform = {{ moves = [\"x\", \"y\"], rotates = \"pitch\" }}\nunactuated = \"platform\"\nhalf_steps = \"mirrored\"\n{limits}",
-                a.name, b.name
-            );
-            vec![("walk.toml".into(), text)]
+/// The different motors; joints with the same limits share one.
+struct Motors(Vec<Motor>);
+
+impl Motors {
+    fn of(robot: &Robot) -> Motors {
+        let mut all = Vec::new();
+        for joint in robot.legs.iter().flat_map(|l| &l.segments).map(|s| &s.joint) {
+            if !all.contains(&joint.motor) {
+                all.push(joint.motor);
+            }
         }
-        [_, _, _, _] => {
-            let middle = legs.iter().map(|l| mount(l).x).sum::<f64>() / 4.0;
-            let at = |fore: bool, right: bool| {
-                legs.iter().find(|l| (mount(l).x > middle) == fore && (mount(l).z > 0.0) == right)
-            };
-            let (Some(fl), Some(fr), Some(hl), Some(hr)) =
-                (at(true, false), at(true, true), at(false, false), at(false, true))
-            else {
-                return Vec::new();
-            };
-            let Some(haunch) = fl.chain.iter().filter_map(joint).find(|j| j.axis == 2) else { return Vec::new() };
-            let text = format!(
-                "{schema}# Trot: the legs of a diagonal move together; the platform stays level.\n\n\
-                 virtual_legs = [[\"{}\", \"{}\"], [\"{}\", \"{}\"]]\n{locked}platform = {{ moves = [\"x\", \"y\"], rotates = \"none\" }}\n\
-                 unactuated = \"leg1.{}\"\nhalf_steps = \"mirrored\"\n{limits}",
-                fl.name,
-                hr.name,
-                fr.name,
-                hl.name,
-                identifier(&haunch.name)
+        Motors(all)
+    }
+
+    fn name(&self, motor: &Motor) -> String {
+        let index = self.0.iter().position(|m| m == motor).unwrap_or_default();
+        if self.0.len() == 1 { "motor".into() } else { format!("motor{}", index + 1) }
+    }
+
+    fn write(&self, out: &mut String) {
+        for motor in &self.0 {
+            let gear = motor.gear.unwrap_or(1.0);
+            let speed = number(motor.velocity * gear * 60.0 / std::f64::consts::TAU);
+            put(out, &format!("\n[actuators.{}]", self.name(motor)));
+            put(
+                out,
+                &match motor.gear {
+                    Some(gear) => format!("gear = {}", number(gear)),
+                    None => "gear = 1.0                        # assumed".into(),
+                },
             );
-            vec![("trot.toml".into(), text)]
+            put(out, &format!("max_torque = {}  # N·m", number(motor.effort / gear)));
+            put(
+                out,
+                &format!(
+                    "max_speed = {{ unloaded = {speed}, at_max_torque = {speed} }}  # rev/min: {} rad/s at the joint",
+                    number(motor.velocity)
+                ),
+            );
+            put(
+                out,
+                &match motor.rotor {
+                    Some(rotor) => format!("rotor_inertia = {}  # kg·m²", number(rotor)),
+                    None => "rotor_inertia = 0.0               # kg·m²; assumed".into(),
+                },
+            );
         }
-        _ => Vec::new(),
     }
 }

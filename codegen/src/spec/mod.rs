@@ -48,6 +48,7 @@ pub use code::Code;
 pub use diagnostic::{Diagnostic, Label, Source, Span};
 pub use gait::parse_gait;
 pub use locked::Tilted;
+pub use name::unusable_as_folder;
 pub use robot::{RobotFile, parse_robot};
 pub use schema::{gait_schema, robot_schema};
 pub use types::*;

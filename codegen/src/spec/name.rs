@@ -132,7 +132,7 @@ fn unusable_in_rust(name: &str) -> Option<String> {
 }
 
 /// Why the folder of a further robot cannot have this name: it is that of a module.
-pub(crate) fn unusable_as_folder(name: &str) -> Option<&'static str> {
+pub fn unusable_as_folder(name: &str) -> Option<&'static str> {
     if !is_identifier(name) || name.len() > LONGEST {
         Some("it names a module in Rust: letters a to z, digits and _, a letter first")
     } else if name != module_name(name) {

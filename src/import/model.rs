@@ -1,0 +1,104 @@
+//! What URDF and MJCF both say: links on joints, each thing with its place in the file. SI units, the file's own axes.
+
+use super::fault::Place;
+use nalgebra::{Isometry3, Matrix3, Vector3};
+
+/// A robot as its file has it.
+pub struct Model {
+    pub name: String,
+    pub format: Format,
+    pub links: Vec<Link>,
+    pub joints: Vec<Joint>,
+    /// What was left out or rounded, a sentence each.
+    pub notes: Vec<String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    Urdf,
+    Mjcf,
+}
+
+impl Format {
+    pub fn name(self) -> &'static str {
+        match self {
+            Format::Urdf => "URDF",
+            Format::Mjcf => "MJCF",
+        }
+    }
+}
+
+pub struct Link {
+    pub name: String,
+    pub place: Place,
+    /// In the link's frame.
+    pub masses: Vec<Mass>,
+    /// What can touch the ground, in the link's frame.
+    pub shapes: Vec<Shape>,
+}
+
+/// A mass with its moments of inertia about its centre, in its own frame; kg, kg·m².
+pub struct Mass {
+    pub mass: f64,
+    pub frame: Isometry3<f64>,
+    pub inertia: Matrix3<f64>,
+}
+
+#[derive(Clone, Debug)]
+pub struct Shape {
+    pub frame: Isometry3<f64>,
+    pub solid: Solid,
+}
+
+/// Capsules and cylinders lie along their z axis; a box has half its edges; m.
+#[derive(Clone, Copy, Debug)]
+pub enum Solid {
+    Sphere { radius: f64 },
+    Capsule { radius: f64, half: f64 },
+    Cylinder { radius: f64, half: f64 },
+    Box { half: [f64; 3] },
+}
+
+pub struct Joint {
+    pub name: String,
+    pub place: Place,
+    pub kind: Kind,
+    /// Indices of links.
+    pub parent: usize,
+    pub child: usize,
+    /// The joint's frame in the parent's.
+    pub frame: Isometry3<f64>,
+    /// The child's origin in the joint's frame, m.
+    pub offset: Vector3<f64>,
+    /// In the joint's frame, any length.
+    pub axis: Vector3<f64>,
+    /// Stops, rad; `None` where the file gives none.
+    pub range: Option<[f64; 2]>,
+    /// At the joint: N·m, rad/s.
+    pub effort: Option<f64>,
+    pub velocity: Option<f64>,
+    /// Motor turns per joint turn.
+    pub gear: Option<f64>,
+    /// At the motor, kg·m².
+    pub rotor: Option<f64>,
+    pub damped: bool,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Kind {
+    Fixed,
+    Revolute,
+    Continuous,
+    /// Puts a model into a world.
+    Free,
+    /// Follows another joint.
+    Mimic,
+    /// Any other, by its name.
+    Other(String),
+}
+
+impl Joint {
+    pub fn turns(&self) -> bool {
+        matches!(self.kind, Kind::Revolute | Kind::Continuous)
+    }
+}

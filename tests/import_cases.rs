@@ -1,0 +1,488 @@
+//! Files on which imports fell short, each the smallest of its kind, with what is right: in `tests/import/`. What is imported
+//! passes the specification's checks; what is not says everything that is in the way, each with where it is and a remedy.
+
+#[path = "import/given.rs"]
+mod given;
+
+use given::given;
+use piaffe::import::{Fault, Import, Kind, Options, import};
+use piaffe_codegen::spec::{HalfSteps, Robot, parse_gait, parse_robot};
+use piaffe_codegen::{RobotFiles, SpecFile, check};
+
+fn text(file: &str) -> String {
+    let path = format!("{}/tests/import/{file}", env!("CARGO_MANIFEST_DIR"));
+    std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{path}: {e}"))
+}
+
+/// What an import must give: a specification that builds, in a folder of its own.
+fn builds(made: &Import) -> Robot {
+    let file = |path: &str, text: &str| SpecFile { path: path.into(), text: text.into() };
+    let gaits = made.gaits.iter().map(|(name, text)| file(name, text)).collect();
+    check(&[RobotFiles { module: made.folder.clone(), robot: file("robot.toml", &made.robot), gaits }])
+        .unwrap_or_else(|e| panic!("{e}"));
+    let robot = parse_robot("robot.toml", &made.robot).unwrap_or_else(|e| panic!("{}", e[0]));
+    assert!(!made.gaits.is_empty());
+    for (name, text) in &made.gaits {
+        parse_gait(name, text, &robot).unwrap_or_else(|e| panic!("{}", e[0]));
+    }
+    robot.robot
+}
+
+fn imported(file: &str) -> (Import, Robot) {
+    with(file, &[])
+}
+
+/// With options, written as on the command line.
+fn with(file: &str, options: &[(&str, &str)]) -> (Import, Robot) {
+    let made = import(&text(file), &given(options)).unwrap_or_else(|e| panic!("{file}: {e}"));
+    let robot = builds(&made);
+    (made, robot)
+}
+
+fn refused(file: &str) -> Vec<Fault> {
+    let faults = import(&text(file), &Options::default()).expect_err(file).0;
+    assert!(faults.iter().all(|f| !f.remedy.is_empty()), "{faults:#?}");
+    faults
+}
+
+fn gaits(made: &Import) -> Vec<&str> {
+    made.gaits.iter().map(|(name, _)| name.as_str()).collect()
+}
+
+fn says(made: &Import, words: &str) -> bool {
+    made.notes.iter().any(|note| note.contains(words)) && made.robot.contains(words)
+}
+
+/// How the half steps of a gait relate.
+fn half_steps(made: &Import, gait: &str) -> HalfSteps {
+    let robot = parse_robot("robot.toml", &made.robot).unwrap();
+    let (name, text) = made.gaits.iter().find(|(name, _)| name == gait).unwrap();
+    parse_gait(name, text, &robot).unwrap().half_steps
+}
+
+#[test]
+fn a_plain_quadruped_trots_and_bounds() {
+    let (made, robot) = imported("00-control-ok.urdf");
+    assert_eq!(gaits(&made), ["trot.toml", "bound.toml"]);
+    assert_eq!(half_steps(&made, "trot.toml"), HalfSteps::Mirrored);
+    assert_eq!(robot.legs[0].chain[1].link.end, [0.0, -0.2, 0.0]);
+}
+
+#[test]
+fn stops_beyond_a_turn_become_a_turn() {
+    let (made, robot) = imported("01-continuous-hip.urdf");
+    assert!(says(&made, "one turn to either side"));
+    let [low, high] = robot.legs[0].chain[0].joint.range;
+    let turn = std::f64::consts::TAU;
+    assert!(high <= turn && turn - high < 1e-6 && low == -high);
+    let wide = text("00-control-ok.urdf").replace(r#"lower="-1.5" upper="1.5""#, r#"lower="-9.42" upper="9.42""#);
+    let made = import(&wide, &Options::default()).unwrap();
+    assert!(says(&made, "cut to one turn"));
+    assert_eq!(builds(&made).legs[0].chain[0].joint.range, [low, high]);
+}
+
+#[test]
+fn what_is_dropped_anyway_refuses_no_file() {
+    for file in ["03-two-materials.urdf", "11-comment-rest-in-geometry.urdf"] {
+        assert_eq!(imported(file).1, imported("00-control-ok.urdf").1, "{file}");
+    }
+    let odd = text("00-control-ok.urdf")
+        .replace("<robot name=\"q\">", "<robot name=\"q\"><gazebo:plugin/><unknown a=\"1\"><b/></unknown>")
+        .replace(
+            "<link name=\"fl_foot\"/>",
+            "<link name=\"fl_foot\"><visual><geometry><mesh/></geometry></visual></link>",
+        );
+    let odd = format!("\n\n{odd}\0\n");
+    assert_eq!(builds(&import(&odd, &Options::default()).unwrap()), imported("00-control-ok.urdf").1);
+}
+
+#[test]
+fn what_a_file_rounds_is_made_alike() {
+    let (made, robot) = imported("04-left-right-differ-by-15um-in-the-virtual-leg.urdf");
+    assert!(says(&made, "made alike"));
+    assert_eq!(half_steps(&made, "trot.toml"), HalfSteps::Mirrored);
+    assert!((robot.legs[0].chain[0].link.com[0] - 0.010015).abs() < 1e-12);
+    let (made, robot) = imported("cad.urdf");
+    assert_eq!(half_steps(&made, "walk.toml"), HalfSteps::Mirrored);
+    assert!((robot.legs[1].chain[1].link.mass - 1.00015).abs() < 1e-12);
+    // Where a person wants them as they are, the half steps are two.
+    let (made, robot) = with("cad.urdf", &[("--alike", "0")]);
+    assert_eq!(half_steps(&made, "walk.toml"), HalfSteps::Distinct);
+    assert_eq!(robot.legs[1].chain[1].link.mass, 1.0003);
+}
+
+#[test]
+fn counterparts_keep_to_the_stops_that_they_share() {
+    let (made, robot) = imported("05-fore-hind-range-differ.urdf");
+    assert_eq!(gaits(&made), ["trot.toml", "bound.toml"]);
+    assert!(says(&made, "the stops of `fl_hip`") && says(&made, "the stops of `hl_hip`"));
+    // To the left in the file, to the right in the specification.
+    for leg in &robot.legs {
+        assert_eq!(leg.chain[0].joint.range, [-3.4, 0.5]);
+    }
+}
+
+#[test]
+fn legs_that_bend_opposite_ways_bound() {
+    let (made, _) = imported("06-fore-hind-mirrored-legs.urdf");
+    assert_eq!(gaits(&made), ["bound.toml"]);
+    assert!(says(&made, "bend opposite ways"));
+}
+
+#[test]
+fn all_that_is_missing_is_said_at_once_and_can_be_given() {
+    let faults = refused("08-no-limit-element.urdf");
+    assert_eq!(faults.len(), 12);
+    assert!(
+        faults
+            .iter()
+            .all(|f| f.kind == Kind::Limit && f.place.as_ref().is_some_and(|p| [9, 16, 23, 30].contains(&p.line)))
+    );
+    let shown = piaffe::import::ImportError(faults).to_string();
+    for option in ["--effort", "--velocity", "--range"] {
+        assert_eq!(shown.matches(&format!("{option} JOINT=")).count(), 1, "{shown}");
+    }
+    let (_, robot) =
+        with("08-no-limit-element.urdf", &[("--effort", "30"), ("--velocity", "20"), ("--range", "*_hip=-1.5,1.5")]);
+    assert_eq!(robot, imported("00-control-ok.urdf").1);
+}
+
+#[test]
+fn gears_and_rotors_are_taken_over() {
+    let (made, robot) = imported("09-transmission.urdf");
+    let knee = |leg: usize| &robot.legs[leg].chain[1].joint.actuator;
+    for leg in 0..4 {
+        assert_eq!((knee(leg).gear, knee(leg).rotor_inertia, knee(leg).max_torque), (50.0, 0.0003, 0.6));
+        assert!((knee(leg).unloaded_speed - 20.0 * 50.0 * 60.0 / std::f64::consts::TAU).abs() < 1e-6);
+    }
+    assert_eq!(robot.legs[0].chain[0].joint.actuator.gear, 1.0);
+    assert!(says(&made, "the gear of `fr_knee` is the one that the file gives for its counterpart"));
+    let (_, given) = with("00-control-ok.urdf", &[("--gear", "*_knee=50"), ("--rotor", "*_knee=0.0003")]);
+    assert_eq!(given, robot);
+}
+
+#[test]
+fn a_robot_that_faces_elsewhere_is_asked_about() {
+    let faults = refused("12-y-forward.urdf");
+    assert!(matches!(&faults[..], [f] if f.kind == Kind::Axes && f.remedy.contains("--forward y")), "{faults:?}");
+    let (made, robot) = with("12-y-forward.urdf", &[("--forward", "y")]);
+    assert_eq!(gaits(&made), ["trot.toml", "bound.toml"]);
+    let control = imported("00-control-ok.urdf").1;
+    for (a, b) in robot.legs.iter().zip(&control.legs) {
+        assert_eq!(a.mount, b.mount);
+    }
+    // Facing backward, and lying on its side.
+    let plain = text("00-control-ok.urdf");
+    let backward =
+        plain.replace("xyz=\"0.2 ", "xyz=\"T ").replace("xyz=\"-0.2 ", "xyz=\"0.2 ").replace("\"T ", "\"-0.2 ");
+    let names = [("fl_", "front_l_"), ("fr_", "front_r_"), ("hl_", "hind_l_"), ("hr_", "hind_r_")];
+    let backward = names.iter().fold(backward, |text, (from, to)| text.replace(from, to));
+    let faults = import(&backward, &Options::default()).expect_err("faces backward").0;
+    assert!(faults[0].kind == Kind::Axes && faults[0].remedy.contains("--forward -x"));
+    // y up: (x, y, z) of the file become (x, −z, y).
+    let aside = |text: &str| {
+        let mut out = String::new();
+        let mut rest = text;
+        while let Some(at) = rest.find("xyz=\"") {
+            let (head, tail) = rest.split_at(at + 5);
+            let end = tail.find('"').unwrap();
+            let p: Vec<f64> = tail[..end].split(' ').map(|x| x.parse().unwrap()).collect();
+            out += &format!("{head}{} {} {}", p[0], p[2], -p[1]);
+            rest = &tail[end..];
+        }
+        out + rest
+    };
+    let faults = import(&aside(&plain), &Options::default()).expect_err("lies on its side").0;
+    assert!(faults[0].kind == Kind::Axes && faults[0].remedy.contains("--up y"), "{faults:?}");
+    let options = given(&[("--forward", "x"), ("--up", "y")]);
+    builds(&import(&aside(&plain), &options).unwrap());
+}
+
+#[test]
+fn a_head_is_no_leg() {
+    let (made, robot) = imported("14-head-is-a-leg.urdf");
+    assert_eq!(robot.legs.len(), 4);
+    assert!(says(&made, "`neck` is held at 0 rad") && says(&made, "does not reach the ground"));
+    assert!((robot.platform.mass - 8.3).abs() < 1e-12);
+}
+
+#[test]
+fn names_are_distinct_and_stay_on_their_line() {
+    let (_, robot) = imported("15-name-clash.urdf");
+    let names: Vec<&str> = robot.legs.iter().map(|leg| leg.chain[0].link.name.as_str()).collect();
+    assert_eq!(names, ["leg_a", "leg_a_2", "hl_thigh", "hr_thigh"]);
+    let hostile = text("00-control-ok.urdf")
+        .replace("name=\"q\"", "name=\"a&#10;evil = 1&#x202e;&#x2028;\"")
+        .replace("\"fl_hip\"", "\"fl&#10;[x]&#x202e;hip\"");
+    let made = import(&hostile, &Options::default()).unwrap();
+    builds(&made);
+    let hidden = |c: char| (c.is_control() && c != '\n') || "\u{202e}\u{2028}".contains(c);
+    assert!(!made.robot.contains(hidden) && !made.robot.lines().any(|l| l.starts_with("evil") || l.starts_with("[x]")));
+    assert!(made.notes.iter().all(|n| !n.contains(|c: char| c == '\n' || hidden(c))));
+}
+
+#[test]
+fn a_number_that_is_none_is_named_with_its_place() {
+    let faults = refused("16-bad-number.urdf");
+    let shown = faults[0].to_string();
+    assert!(shown.contains("line 9") && shown.contains("<limit>") && shown.contains("lower=\"-1.5.\""), "{shown}");
+}
+
+#[test]
+fn every_fault_has_its_place_and_remedy() {
+    let faults = refused("17-massless-link-between.urdf");
+    assert!(matches!(&faults[..], [f] if f.kind == Kind::Inertia && f.remedy.contains("--lock fl_hip")));
+    let faults = refused("19-two-refusals-at-once.urdf");
+    assert_eq!(faults.iter().filter(|f| f.kind == Kind::ObliqueAxis).count(), 8);
+    let faults = refused("masslessroot.urdf");
+    assert!(matches!(&faults[..], [f] if f.kind == Kind::Inertia && f.what.contains("trunk")));
+    let faults = refused("triangle.urdf");
+    assert!(faults.len() == 2 && faults.iter().all(|f| f.kind == Kind::Inertia && f.remedy.contains("--mend")));
+    let (made, _) = with("triangle.urdf", &[("--mend", "")]);
+    assert!(says(&made, "changed to the nearest"));
+    let faults = refused("degrees.urdf");
+    assert!(faults.len() == 2 && faults.iter().all(|f| f.what.contains("degrees") && f.remedy.contains("1.7977")));
+}
+
+#[test]
+fn other_formats_are_named_with_what_converts_them() {
+    let faults = refused("22-xacro.urdf.xacro");
+    assert!(faults[0].what.contains("xacro") && faults[0].remedy.contains("xacro FILE > robot.urdf"));
+    let sdf = import("<sdf version=\"1.6\"/>", &Options::default()).expect_err("SDF").0;
+    assert!(sdf[0].remedy.contains("sdf2mjcf"));
+    let faults = refused("21-mjcf.xml");
+    assert!(faults[0].what.contains("no body of this file has joints"));
+}
+
+#[test]
+fn a_locked_ankle_leaves_the_foot_where_it_was() {
+    for (file, options) in [
+        ("lockankle.urdf", &[("--lock", "*_ankle")][..]),
+        ("lockankle.urdf", &[]),
+        ("sensor_foot.urdf", &[("--lock", "*_ankle")]),
+        ("sensor_foot.urdf", &[]),
+    ] {
+        let (_, robot) = with(file, options);
+        for leg in &robot.legs {
+            assert_eq!(leg.chain[1].link.end, [0.0, -0.35, 0.0], "{file}");
+        }
+    }
+    let (_, robot) = with("lockankle.urdf", &[("--foot", "*_foot=0.03,0,-0.02")]);
+    assert_eq!(robot.legs[0].chain.len(), 3);
+    let bent =
+        import(&text("lockankle.urdf"), &given(&[("--lock", "left_ankle=0.7")])).expect_err("beyond its stops").0;
+    assert!(bent[0].kind == Kind::Option && bent[0].remedy.contains("left_ankle=0.5"));
+}
+
+#[test]
+fn round_and_flat_feet_touch_the_ground_with_their_bottoms() {
+    let foot = |geometry: &str| {
+        let shape = format!("<collision><geometry>{geometry}</geometry></collision></link>");
+        let text = text("00-control-ok.urdf");
+        let text = ["fl", "fr", "hl", "hr"].iter().fold(text, |text, leg| {
+            text.replace(&format!("<link name=\"{leg}_foot\"/>"), &format!("<link name=\"{leg}_foot\">{shape}"))
+        });
+        let made = import(&text, &Options::default()).unwrap();
+        let robot = builds(&made);
+        (robot.legs[0].chain[1].link.end, made.notes.join("\n"))
+    };
+    let (end, notes) = foot("<sphere radius=\"0.02\"/>");
+    assert!((end[1] + 0.22).abs() < 1e-12 && notes.contains("20 mm (that it rolls is neglected)"), "{end:?}");
+    let (end, _) = foot("<box size=\"0.1 0.05 0.03\"/>");
+    assert!((end[1] + 0.215).abs() < 1e-12 && end[0] == 0.0, "{end:?}");
+}
+
+/// Angles that people round: legs that are turned half round by 3.14, with all in them the other way, are the same legs.
+#[test]
+fn rounded_right_angles_are_right() {
+    let turned = text("00-control-ok.urdf")
+        .replace("rpy=\"0 0 0\"", "rpy=\"0 0 3.14\"")
+        .replace("axis xyz=\"0 1 0\"", "axis xyz=\"0 -1 0\"")
+        .replace("xyz=\"0.01 0 -0.1\"", "xyz=\"-0.01 0 -0.1\"");
+    let made = import(&turned, &Options::default()).unwrap();
+    assert!(says(&made, "4 angles of the file are right angles rounded by up to 1.6e-3 rad"));
+    assert_eq!(builds(&made), imported("00-control-ok.urdf").1);
+}
+
+/// Planar robots: an inertia about one axis, hips at one place.
+#[test]
+fn planar_robots_are_robots() {
+    let flat = text("cad.urdf")
+        .replace("xyz=\"0 0.1 0\"", "xyz=\"0 0 0\"")
+        .replace("xyz=\"0 -0.1 0\"", "xyz=\"0 0 0\"")
+        .replace(
+            "ixx=\"0.01\" ixy=\"0\" ixz=\"0\" iyy=\"0.01\" iyz=\"0\" izz=\"0.001\"",
+            "ixx=\"0\" ixy=\"0\" ixz=\"0\" iyy=\"0.01\" iyz=\"0\" izz=\"0\"",
+        );
+    let made = import(&flat, &Options::default()).unwrap();
+    let robot = builds(&made);
+    assert!(says(&made, "mm apart sideways") && says(&made, "none that a body can have"));
+    assert_eq!(robot.legs[0].chain[1].link.inertia[2][2], 0.01);
+    assert!(robot.legs[0].mount[2] < 0.0 && robot.legs[1].mount[2] > 0.0);
+}
+
+/// Links without mass between the joints of a hip are merged, and said.
+#[test]
+fn virtual_links_of_a_hip_are_held() {
+    let hip = text("00-control-ok.urdf");
+    let hip = ["fl", "fr", "hl", "hr"].iter().fold(hip, |text, leg| {
+        let joint = format!("<joint name=\"{leg}_hip\" type=\"revolute\"><parent link=\"base\"/>");
+        let at = text.find(&joint).unwrap();
+        let rest = &text[at..];
+        let origin = &rest[rest.find("<origin").unwrap()..rest.find("<axis").unwrap()];
+        let new = format!(
+            "<link name=\"{leg}_v\"/><joint name=\"{leg}_roll\" type=\"revolute\"><parent link=\"base\"/><child link=\"{leg}_v\"/>{origin}\
+             <axis xyz=\"1 0 0\"/><limit lower=\"-0.5\" upper=\"0.5\" effort=\"30\" velocity=\"20\"/></joint>\
+             <joint name=\"{leg}_hip\" type=\"revolute\"><parent link=\"{leg}_v\"/>"
+        );
+        let moved = rest.replacen(&joint, &new, 1);
+        let at_zero = moved.rfind(&format!("<joint name=\"{leg}_hip\"")).unwrap();
+        let (head, tail) = moved.split_at(at_zero);
+        format!("{}{head}{}", &text[..at], tail.replacen(origin, "", 1))
+    });
+    let made = import(&hip, &Options::default()).unwrap();
+    assert!(says(&made, "`fl_roll` is held at 0 rad: `fl_v` has no mass"));
+    assert_eq!(builds(&made), imported("00-control-ok.urdf").1);
+}
+
+/// Depth is bounded by nothing but the file: no recursion.
+#[test]
+fn long_chains_and_deep_nests_do_not_abort() {
+    let mut text = String::from("<robot name=\"long\"><link name=\"l0\"/>");
+    for k in 1..8000 {
+        text += &format!(
+            "<link name=\"l{k}\"/><joint name=\"j{k}\" type=\"fixed\"><parent link=\"l{}\"/><child link=\"l{k}\"/></joint>",
+            k - 1
+        );
+    }
+    assert!(import(&(text + "</robot>"), &Options::default()).is_err());
+    let turning = |kind: &str, count: usize| {
+        let mut text = String::from("<robot name=\"long\"><link name=\"l0\"/>");
+        for k in 1..count {
+            text += &format!(
+                "<link name=\"l{k}\"/><joint name=\"j{k}\" type=\"{kind}\"><parent link=\"l{}\"/><child link=\"l{k}\"/></joint>",
+                k - 1
+            );
+        }
+        text + "</robot>"
+    };
+    assert!(import(&turning("revolute", 300), &Options::default()).is_err());
+    for (tag, root) in [("a", "robot"), ("body", "mujoco")] {
+        let nest =
+            format!("<{root}>{}{}</{root}>", format!("<{tag}>").repeat(16_000), format!("</{tag}>").repeat(16_000));
+        assert!(import(&nest, &Options::default()).is_err());
+        let open = format!("<{root}>{}", format!("<{tag}>").repeat(16_000));
+        assert!(
+            matches!(&import(&open, &Options::default()).expect_err("not closed").0[..], [f] if f.kind == Kind::Syntax)
+        );
+    }
+}
+
+/// The same robot in MJCF: defaults, degrees, motors, geoms as feet, inertias by their principal axes.
+#[test]
+fn mjcf_says_the_same_as_urdf() {
+    let mut legs = String::new();
+    for (name, x, y) in [("fl", 0.2, 0.1), ("fr", 0.2, -0.1), ("hl", -0.2, 0.1), ("hr", -0.2, -0.1)] {
+        legs += &format!(
+            r#"<body name="{name}_thigh" pos="{x} {y} 0"><inertial pos="0.01 0 -0.1" mass="0.8" diaginertia="0.001 0.005 0.005" quat="1 0 1 0"/>
+            <joint name="{name}_hip" range="-85.943669269623 85.943669269623"/>
+            <body name="{name}_calf" pos="0 0 -0.2"><inertial pos="0 0 -0.1" mass="0.2" fullinertia="0.002 0.002 0.0001 0 0 0"/>
+            <joint name="{name}_knee" class="knee"/><geom type="sphere" size="0.02" pos="0 0 -0.18"/><geom class="look" type="box" size="1 1 1"/></body></body>"#
+        );
+    }
+    let motors: String = ["fl", "fr", "hl", "hr"]
+        .iter()
+        .map(|l| {
+            format!(
+                "<motor joint=\"{l}_hip\"/><position joint=\"{l}_knee\" kp=\"9\" forcerange=\"-0.6 0.6\" gear=\"50\"/>"
+            )
+        })
+        .collect();
+    let text = format!(
+        r#"<mujoco model="q"><compiler autolimits="true"/><default><joint axis="0 1 0"/><motor ctrlrange="-30 30"/>
+        <default class="knee"><joint range="-143.2394487827 -5.7295779513" armature="0.75" damping="1"/></default>
+        <default class="look"><geom contype="0" conaffinity="0" mass="0"/></default></default>
+        <worldbody><geom type="plane" size="1 1 1"/><body name="base" pos="0 0 1"><freejoint/>
+        <inertial pos="0 0 0" mass="8" diaginertia="0.05 0.1 0.12"/>{legs}</body></worldbody><actuator>{motors}</actuator></mujoco>"#
+    );
+    let lacking = import(&text, &Options::default()).expect_err("no speeds").0;
+    assert!(lacking.len() == 8 && lacking.iter().all(|f| f.remedy.contains("--velocity")));
+    let made = import(&text, &given(&[("--velocity", "20")])).unwrap();
+    let (robot, control) = (builds(&made), imported("00-control-ok.urdf").1);
+    assert!(says(&made, "damping, friction and springs are dropped, of 4 joints"));
+    assert_eq!(robot.platform, control.platform);
+    for (leg, other) in robot.legs.iter().zip(&control.legs) {
+        for (s, t) in leg.chain.iter().zip(&other.chain) {
+            let near = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-9);
+            assert!(near(s.link.com, t.link.com) && near(s.link.end, t.link.end) && s.link.mass == t.link.mass);
+            assert!(s.link.inertia.iter().zip(t.link.inertia).all(|(a, b)| near(*a, b)), "{:?}", s.link);
+            assert!((0..2).all(|k| (s.joint.range[k] - t.joint.range[k]).abs() < 1e-9));
+        }
+        let knee = &leg.chain[1].joint.actuator;
+        assert!((knee.gear, knee.max_torque) == (50.0, 0.6) && (knee.rotor_inertia - 0.0003).abs() < 1e-12);
+        assert_eq!(leg.chain[0].joint.actuator.max_torque, 30.0);
+    }
+}
+
+/// Geoms give inertias where there is no <inertial>, and what closes a loop is refused.
+#[test]
+fn mjcf_takes_inertias_from_geoms_and_refuses_loops() {
+    let leg = |name: &str, y: f64| {
+        format!(
+            r#"<body name="{name}_thigh" pos="0 {y} 0"><joint name="{name}_hip" axis="0 1 0" range="-90 90"/>
+            <geom type="capsule" fromto="0 0 0 0 0 -0.4" size="0.03" density="1000"/>
+            <body name="{name}_shin" pos="0 0 -0.4"><joint name="{name}_knee" axis="0 1 0" range="0 120"/>
+            <geom type="capsule" fromto="0 0 0 0 0 -0.4" size="0.02" mass="1"/></body></body>"#
+        )
+    };
+    let text = |more: &str| {
+        format!(
+            r#"<mujoco><worldbody><body name="trunk"><joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>
+            <joint axis="0 1 0"/><geom type="box" size="0.1 0.1 0.2" mass="10"/>{}{}</body></worldbody>
+            <actuator><general joint="l_hip" ctrlrange="-1 1" gear="40"/><motor joint="l_knee" ctrlrange="-1 1" gear="40"/>
+            <motor joint="r_hip" ctrlrange="-1 1" gear="40"/><motor joint="r_knee" ctrlrange="-1 1" gear="40"/></actuator>{more}</mujoco>"#,
+            leg("l", 0.1),
+            leg("r", -0.1)
+        )
+    };
+    let options = given(&[("--velocity", "10")]);
+    let made = import(&text(""), &options).unwrap();
+    let robot = builds(&made);
+    assert!(says(&made, "the joints by which `trunk` moves in the world are dropped"));
+    let thigh = &robot.legs[0].chain[0].link;
+    let (r, h) = (0.03f64, 0.4);
+    let pi = std::f64::consts::PI;
+    let (tube, ball) = (1000.0 * pi * r * r * h, 1000.0 * 4.0 / 3.0 * pi * r.powi(3));
+    assert!((thigh.mass - tube - ball).abs() < 1e-9);
+    let swing = tube * (r * r / 4.0 + h * h / 12.0) + ball * (0.4 * r * r + h * h / 4.0 + 3.0 * h * r / 8.0);
+    assert!((thigh.inertia[2][2] - swing).abs() < 1e-9 * swing);
+    assert!((robot.legs[0].chain[1].link.end[1] + 0.42).abs() < 1e-12);
+    assert_eq!(robot.legs[0].chain[0].joint.actuator.max_torque, 1.0);
+    let closed = text("<equality><connect body1=\"l_shin\" body2=\"r_shin\" anchor=\"0 0 0\"/></equality>");
+    assert!(import(&closed, &options).expect_err("a loop").0.iter().any(|f| f.kind == Kind::Loop));
+}
+
+/// Numbers of any size end in a specification that builds or in a fault, as do texts cut anywhere.
+#[test]
+fn hostile_numbers_and_torn_files_do_not_panic() {
+    let control = text("00-control-ok.urdf");
+    for number in ["nan", "inf", "1e308", "-1e308", "1e-320", "", "0x10", "1,5", "-0"] {
+        for (from, to) in [
+            ("0.2 0.1 0\"", format!("{number} 0.1 0\"")),
+            ("value=\"0.8\"", format!("value=\"{number}\"")),
+            ("iyy=\"0.005\"", format!("iyy=\"{number}\"")),
+            ("lower=\"-1.5\"", format!("lower=\"{number}\"")),
+            ("upper=\"1.5\"", format!("upper=\"{number}\"")),
+            ("effort=\"30\"", format!("effort=\"{number}\"")),
+            ("axis xyz=\"0 1 0\"", format!("axis xyz=\"0 {number} 0\"")),
+            ("rpy=\"0 0 0\"", format!("rpy=\"0 {number} 0\"")),
+        ] {
+            if let Ok(made) = import(&control.replace(from, &to), &Options::default()) {
+                builds(&made);
+            }
+        }
+    }
+    for end in (0..control.len()).step_by(97).filter(|end| control.is_char_boundary(*end)) {
+        assert!(import(&control[..end], &Options::default()).is_err());
+    }
+}
