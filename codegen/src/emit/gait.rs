@@ -26,8 +26,8 @@ pub fn gait_source(
     let mut source = header(origin);
     source += &items(&functions);
     if let Some(runtime) = runtime {
-        let key = key(robot, &mechanism.gait);
-        source += &implementation(mechanism, &lowest, &levers, &key, whole, &functions, &latex, runtime);
+        let description = description(mechanism, &key(robot, &mechanism.gait), &lowest, &functions, runtime);
+        source += &implementation(mechanism, description, &levers, whole, &functions, &latex, runtime);
     }
     source
 }
@@ -55,9 +55,8 @@ pub(super) fn items(functions: &[Function]) -> String {
 /// The gait's type with its description and its `impl Gait`.
 fn implementation(
     m: &Mechanism,
-    lowest: &[usize],
+    description: Layout,
     levers: &[Lever],
-    key: &str,
     whole: &str,
     functions: &[Function],
     latex: &str,
@@ -67,13 +66,7 @@ fn implementation(
     let mut out =
         format!("/// The {} of `{}`.\n#[derive(Clone, Copy, Debug, Default)]\npub struct {name};\n", m.gait, m.robot);
     let ty = format!("{runtime}::Description");
-    constant(
-        "What the gait is made of, in numbers.",
-        "DESCRIPTION",
-        &ty,
-        description(m, key, lowest, functions, runtime),
-        &mut out,
-    );
+    constant("What the gait is made of, in numbers.", "DESCRIPTION", &ty, description, &mut out);
     out += &format!("impl {runtime}::Gait for {name} {{");
     let slice = Layout::list("&[", levers.iter().map(|l| lever(l, runtime)), "]");
     let whole_robot = format!("Option<&'static dyn {runtime}::whole::Whole>");
