@@ -41,7 +41,7 @@ fn kernel_and_verifier_agree_and_no_point_is_lower_than_all_rows() {
 
 #[test]
 fn points_that_are_taken_for_one_are_at_one_height() {
-    for gait in GAITS.iter().copied() {
+    for gait in GAITS {
         let d = gait.description();
         let (numbers, alike) = (Numbers::new(d), alike(d));
         assert!(alike.iter().enumerate().any(|(k, first)| *first < k), "{}: no point is like another", d.key);
