@@ -114,8 +114,10 @@ pub fn search_from(
     ends.par_extend(thetas.par_iter().map(follow));
     let mut found = collect(criterion, &scale, &ends);
     if found.optima.is_empty() {
-        let motions = known.into_iter().chain(ends.into_iter().map(|e| e.local)).filter(Local::is_motion);
-        found.motion = motions.min_by(|a, b| a.costs.of(criterion).total_cmp(&b.costs.of(criterion)));
+        let cheapest = |a: &Local, b: &Local| a.costs.of(criterion).total_cmp(&b.costs.of(criterion));
+        // Where a descent got lost is a motion by its own account only.
+        let lost = || ends.iter().map(|e| e.local.clone()).filter(Local::is_motion).min_by(cheapest);
+        found.motion = known.into_iter().min_by(cheapest).or_else(lost);
     }
     found
 }
