@@ -71,7 +71,8 @@ mod tests {
         );
         assert_eq!(lines("a\n\tb\u{7}"), "a\n\tb\\u{7}");
         let mut out = Harmless(Vec::new());
-        write!(out, "{}: {}\n", "x\u{1b}]0;owned\u{7}", "é").unwrap();
+        let (name, word) = ("x\u{1b}]0;owned\u{7}", "é");
+        writeln!(out, "{name}: {word}").unwrap();
         assert_eq!(String::from_utf8(out.0).unwrap(), "x\\u{1b}]0;owned\\u{7}: é\n");
     }
 }
