@@ -1,7 +1,7 @@
 //! URDF or MJCF → the specification of a robot that builds: what was taken, what was assumed, what was dropped; or everything
 //! that is in the way, each with its place and what to do about it.
 //!
-//! `urdf` and `mjcf` read a [`model`](model::Model): links on joints. `tree` makes of it the bodies that move against each
+//! `urdf` and `mjcf` read a `model`: links on joints. `tree` makes of it the bodies that move against each
 //! other; `limbs` decides which chains are legs and holds the rest still; `foot` finds where they touch the ground. `robot`
 //! has what the specification needs, `symmetry` makes alike what is meant to be, `write` and `gaits` put it into words, and the
 //! specification's own checks have the last one. URDF's axes are x forward, y to the left, z up, unless a person says

@@ -33,7 +33,7 @@ pub struct RealLeg<T> {
     pub spots: Vec<Vec3<T>>,
 }
 
-/// See [`Body`].
+/// See [`Body`](crate::model::Body).
 #[derive(Clone, Copy, Debug)]
 pub struct Rigid<T> {
     pub offset: Vec3<T>,

@@ -31,7 +31,7 @@ pub struct Choice {
     line: Option<Line>,
 }
 
-/// Of all shares with the least margin as large as it can be (to [`SLACK`]), the one on the way to it from `s = 0` that comes first.
+/// Of all shares with the least margin as large as it can be (to `SLACK`), the one on the way to it from `s = 0` that comes first.
 ///
 /// `None` if there is no greatest margin: of numbers that are none, or of limits that more and more of a share only helps.
 pub fn best(rooms: &[Room], squeezes: usize) -> Option<Best> {
