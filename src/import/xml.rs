@@ -22,7 +22,7 @@ impl Prepared {
             match parse(&prepared.text).map(|_| ()) {
                 Ok(()) => return Ok(prepared),
                 Err(roxmltree::Error::UnknownNamespace(prefix, _)) if prepared.declare(&prefix) => {}
-                Err(e) => return Err(prepared.not_xml(&e)),
+                Err(e) => return Err(prepared.not_xml(&placed(&e))),
             }
         }
         Err(prepared.not_xml(&"more than 100 prefixes that nobody declares"))
@@ -66,10 +66,16 @@ impl Prepared {
     }
 
     pub fn document(&self) -> Result<File<'_>, ImportError> {
-        let document = parse(&self.text).map_err(|e| self.not_xml(&e))?;
+        let document = parse(&self.text).map_err(|e| self.not_xml(&placed(&e)))?;
         let newlines = self.text.match_indices('\n').map(|(at, _)| at).collect();
         Ok(File { document, newlines, skipped: self.skipped })
     }
+}
+
+/// What is wrong, with line and column even where the reader leaves them out.
+fn placed(error: &roxmltree::Error) -> String {
+    let (words, place) = (error.to_string(), error.pos().to_string());
+    if words.contains(&place) { words } else { format!("{words} at {place}") }
 }
 
 fn parse(text: &str) -> Result<Document<'_>, roxmltree::Error> {
