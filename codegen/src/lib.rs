@@ -1,7 +1,7 @@
 //! From a declarative description of a legged robot to closed-form, allocation-free Rust.
 //!
 //! The passes, in the order in which data flows: [`spec`] (TOML, validated, with diagnostics) →
-//! [`mechanism`] (virtual legs: one tree of bodies per gait) → [`expr`] (canonical polynomials) →
+//! [`mechanism`] (the real tree in the coordinates of a gait) → [`expr`] (canonical polynomials) →
 //! [`dynamics`] (kernels: the equations of motion) → [`program`] (factored, scheduled) → [`emit`]
 //! (Rust source). Each pass is a pure function: same spec, same bytes. Only [`Config`] reads the
 //! environment and prints.

@@ -6,11 +6,10 @@
 //! the balance of eq. 10: the platform's row where it turns, else a turn of the whole robot.
 
 use super::kernel::Kernel;
-use super::kinematics::{Vec3, add, cross, dot, subtract};
 use super::model::{Model, Origin, scaled};
 use super::solve::Factors;
 use super::turn::Turn;
-use crate::expr::{Poly, Var};
+use crate::expr::{Poly, Var, Vec3, add, cross, dot, subtract};
 use crate::spec::Rotation;
 use std::collections::BTreeMap;
 
@@ -37,11 +36,11 @@ fn virtual_power(model: &mut Model, leg: usize, n: &[Var], phi: &[Var]) -> Poly 
     }
     let mut power = Poly::zero();
     for (b, centre) in model.centres(Origin::Foot(leg)).iter().enumerate() {
-        let body = model.quantities.bodies[b].clone();
+        let body = model.kinematics.bodies[b].clone();
         let velocity = model.rate(centre);
         let mut acceleration = model.rate(&velocity);
         acceleration[1] += &model.quantities.gravity;
-        let spin = model.kinematics.bodies[b].spin.clone();
+        let spin = model.kinematics.bodies[b].place.spin.clone();
         let mut virtual_velocity = add(&with_rates(model, &velocity, &rename), &translation);
         let mut virtual_spin = with_rates(model, &spin, &rename);
         if model.mechanism.rotation == Rotation::None

@@ -1,9 +1,8 @@
 //! The floating model in X = [p, q]: A, H (eq. 5), feet (eq. 2–4), energies, angular momentum.
 
 use super::kernel::Kernel;
-use super::kinematics::{add, cross, dot, subtract};
 use super::model::{Model, Origin, scaled};
-use crate::expr::Poly;
+use crate::expr::{Poly, add, cross, dot, subtract};
 use crate::spec::Rotation;
 
 /// World axis along which σ is taken: Zf, or Xf for a rolling gait.
@@ -89,9 +88,9 @@ pub fn kernels(model: &mut Model) -> Vec<Kernel> {
 fn energy(model: &mut Model) -> Kernel {
     let (mut kinetic, mut potential) = (Poly::zero(), Poly::zero());
     for (b, centre) in model.centres(Origin::World).iter().enumerate() {
-        let body = model.quantities.bodies[b].clone();
+        let body = model.kinematics.bodies[b].clone();
         let velocity = model.rate(centre);
-        let spin = model.kinematics.bodies[b].spin.clone();
+        let spin = model.kinematics.bodies[b].place.spin.clone();
         kinetic += &(&dot(&velocity, &velocity).scaled(0.5) * &body.mass);
         kinetic += &dot(&spin, &scaled(&spin, &body.inertia)).scaled(0.5);
         potential += &(&(&centre[1] * &body.mass) * &model.quantities.gravity);
@@ -111,7 +110,7 @@ fn angular_momentum(model: &mut Model, leg: usize) -> Poly {
     let foot = add(&model.platform(), &model.foot(leg));
     let mut sigma = Poly::zero();
     for (b, centre) in model.centres(Origin::World).iter().enumerate() {
-        let body = model.quantities.bodies[b].clone();
+        let body = model.kinematics.bodies[b].clone();
         let arm = subtract(centre, &foot);
         let velocity = model.rate(centre);
         sigma += &(&cross(&arm, &velocity)[axis] * &body.mass);
@@ -123,8 +122,8 @@ fn angular_momentum(model: &mut Model, leg: usize) -> Poly {
 
 /// Component along the world `axis` of the spin momentum of body `b`.
 fn spin_momentum(model: &Model, b: usize, axis: usize) -> Poly {
-    let spin = &model.kinematics.bodies[b].spin;
-    let angular = scaled(spin, &model.quantities.bodies[b].inertia);
+    let spin = &model.kinematics.bodies[b].place.spin;
+    let angular = scaled(spin, &model.kinematics.bodies[b].inertia);
     // The axis in the body's axes is the partial spin of the platform's rotation about it. In a
     // level gait all bodies turn about it.
     match model.coordinates.q.get(model.mechanism.joints.len()) {

@@ -5,9 +5,8 @@
 //! platform's rotation sees them: a level platform has one lowest point, a pitching one those of its silhouette.
 
 use super::kernel::Kernel;
-use super::kinematics::{Vec3, add, rotate, zero};
 use super::model::Model;
-use crate::expr::{Poly, Var};
+use crate::expr::{Poly, Var, Vec3, add, rotate, zero};
 use crate::mechanism::{Point, points};
 use crate::spec::Rotation;
 use std::f64::consts::{PI, TAU};
@@ -89,7 +88,7 @@ impl Height {
             }
             arm
         };
-        let place = |k: usize| rotate(&model.kinematics.bodies[point.body(m, k)].axes, &arm(k));
+        let place = |k: usize| rotate(&model.kinematics.axes[point.body(m, k)], &arm(k));
         let rest = (1..=links).fold(zero(), |sum, k| add(&sum, &place(k)));
         let seen: &[usize] = match m.rotation {
             Rotation::None => &[1],

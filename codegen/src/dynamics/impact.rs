@@ -4,11 +4,10 @@
 //! rest. In those, the generalized momenta before and after are equal: `Aq⁽ʲ⁾ q̇⁺ = P⁽ʲ⁾(Ẋ⁻)`.
 
 use super::kernel::Kernel;
-use super::kinematics::{Vec3, subtract};
 use super::model::{Model, Origin, scaled};
 use super::sharing;
 use super::solve::Factors;
-use crate::expr::{Poly, Var};
+use crate::expr::{Poly, Var, Vec3, subtract};
 use crate::spec::Rotation;
 use std::collections::BTreeMap;
 
@@ -18,13 +17,13 @@ fn momenta_before(model: &mut Model, landing: usize, platform_velocity: &Vec3) -
     let about: Vec<Vec3> = model.centres(Origin::Foot(landing));
     let mut momenta = vec![Poly::zero(); q.len()];
     for (b, centre) in about.iter().enumerate() {
-        let relative = model.kinematics.bodies[b].com.clone();
+        let relative = model.kinematics.bodies[b].place.com.clone();
         let mut velocity = model.rate(&relative);
         for (v, p) in velocity.iter_mut().zip(platform_velocity) {
             *v += p;
         }
-        let spin = model.kinematics.bodies[b].spin.clone();
-        let body = model.quantities.bodies[b].clone();
+        let spin = model.kinematics.bodies[b].place.spin.clone();
+        let body = model.kinematics.bodies[b].clone();
         let angular = scaled(&spin, &body.inertia);
         for (sum, [x, xd, _]) in momenta.iter_mut().zip(&q) {
             for i in 0..3 {
@@ -65,7 +64,7 @@ fn impulse(model: &mut Model, landing: usize, before: &Vec3, after: &BTreeMap<Va
 
 /// Linear momentum of the robot when the platform moves at `platform`.
 fn linear_momentum(model: &mut Model, platform: &Vec3) -> Vec3 {
-    let mass = model.quantities.total_mass();
+    let mass = model.total_mass();
     let shift = model.platform().map(|x| &x * &mass);
     let relative = subtract(&model.first_moment(Origin::World), &shift);
     let rate = model.rate(&relative);

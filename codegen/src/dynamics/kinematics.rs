@@ -1,15 +1,9 @@
-//! Positions and angular velocities of all bodies, as expressions.
-//!
-//! A frame is a base rotation followed by one turn about one axis. Joints about the same axis add
-//! up to one absolute angle, so a planar chain has one sine and cosine per link and no products.
+//! Positions and angular velocities of all bodies of the real robot in the coordinates of a gait, as expressions.
 
 use super::quantities::{BodyQuantities, Quantities};
-use crate::expr::{Poly, Ring, Var};
+use crate::expr::{Frame, Mat3, Poly, Ring, Var, Vec3, add, rotate, zero};
 use crate::mechanism::{Body, Mechanism};
 use crate::spec::{Axis, Rotation};
-
-pub type Vec3 = [Poly; 3];
-pub type Mat3 = [[Poly; 3]; 3];
 
 /// The symbols of a mechanism: X = [p, q] with rates and accelerations.
 pub struct Coordinates {
@@ -20,6 +14,7 @@ pub struct Coordinates {
 }
 
 /// A body's place and motion relative to the platform's mass centre (position) and the world (spin).
+#[derive(Clone, PartialEq)]
 pub struct Placement {
     /// Mass centre minus p, in the axes on which the tree is built (the world's).
     pub com: Vec3,
@@ -29,21 +24,22 @@ pub struct Placement {
     pub axes: Mat3,
 }
 
-/// Positions relative to the platform's mass centre.
-pub struct Kinematics {
-    pub bodies: Vec<Placement>,
-    pub feet: [Vec3; 2],
+/// What weighs in one motion: a body, or bodies that the gait moves exactly alike.
+#[derive(Clone)]
+pub struct Moving {
+    pub place: Placement,
+    pub mass: Poly,
+    /// About the mass centre, in the axes of the body.
+    pub inertia: [Vec3; 3],
 }
 
-/// The axes of a body.
-#[derive(Clone)]
-pub struct Frame {
-    base: Mat3,
-    /// Angular velocity of the base in its own axes.
-    base_spin: Vec3,
-    axis: Axis,
-    /// Coordinates whose sum is the turn about `axis`.
-    turn: Vec<Var>,
+/// Positions relative to the platform's mass centre. In a planar gait all that moves does so in the sagittal plane: z is 0.
+pub struct Kinematics {
+    /// The platform first.
+    pub bodies: Vec<Moving>,
+    /// Of the platform, then of each virtual leg's links from the platform down.
+    pub axes: Vec<Mat3>,
+    pub feet: [Vec3; 2],
 }
 
 impl Coordinates {
@@ -70,17 +66,42 @@ impl Kinematics {
     ) -> Kinematics {
         let theta = coordinates.q.get(mechanism.joints.len()).map(|c| c[0]);
         let mut platform = Frame::base(zero());
-        match mechanism.rotation {
-            Rotation::None => {}
-            Rotation::Pitch => platform.turn.extend(theta),
-            Rotation::Roll => {
-                platform.axis = Axis::Roll;
-                platform.turn.extend(theta);
+        if let Some(theta) = theta {
+            let axis = if mechanism.rotation == Rotation::Roll { Axis::Roll } else { Axis::Pitch };
+            platform = platform.turned(ring, axis.index(), theta);
+        }
+        let planar = |mut v: Vec3| {
+            if !mechanism.lateral {
+                v[2] = Poly::zero();
+            }
+            v
+        };
+        let bodies = mechanism.tree();
+        let tree = Tree::new(ring, platform, &bodies, &quantities.bodies, &coordinates.q);
+        let feet = [0, 1].map(|leg| {
+            let last = mechanism.lead_links(leg).last().unwrap_or_default();
+            planar(tree.point(ring, last, &quantities.feet[leg]))
+        });
+        let leads = (0..2).flat_map(|leg| mechanism.lead_links(leg));
+        let axes = std::iter::once(0).chain(leads).map(|body| tree.bodies[body].axes.clone()).collect();
+        let mut alike: Vec<Moving> = Vec::new();
+        for (place, numbers) in tree.bodies.into_iter().zip(&quantities.bodies) {
+            let place = Placement { com: planar(place.com), ..place };
+            match alike.iter_mut().find(|one| one.place == place) {
+                Some(one) => one.take(numbers),
+                None => alike.push(Moving { place, mass: numbers.mass.clone(), inertia: numbers.inertia.clone() }),
             }
         }
-        let tree = Tree::new(ring, platform, &mechanism.bodies, &quantities.bodies, &coordinates.q);
-        let feet = [0, 1].map(|k| tree.point(ring, mechanism.legs[k].foot_body, &quantities.feet[k]));
-        Kinematics { bodies: tree.bodies, feet }
+        Kinematics { bodies: alike, axes, feet }
+    }
+}
+
+impl Moving {
+    /// Adds a body that moves alike.
+    fn take(&mut self, body: &BodyQuantities) {
+        self.mass += &body.mass;
+        let more = body.inertia.as_flattened();
+        self.inertia.as_flattened_mut().iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
     }
 }
 
@@ -105,7 +126,7 @@ impl Tree {
             let (frame, joint) = match (body.parent, body.coordinate) {
                 (Some(parent), Some(coordinate)) => {
                     let joint = tree.point(ring, parent, &numbers.offset);
-                    (tree.frames[parent].0.turned(ring, body.axis, q[coordinate][0]), joint)
+                    (tree.frames[parent].0.turned(ring, body.axis.index(), q[coordinate][0]), joint)
                 }
                 _ => (platform.clone(), zero()),
             };
@@ -125,106 +146,4 @@ impl Tree {
 fn place(ring: &mut Ring, com: &Vec3, frame: &Frame, joint: &Vec3) -> Placement {
     let axes = frame.rotation(ring);
     Placement { com: add(joint, &rotate(&axes, com)), spin: frame.spin(ring), axes }
-}
-
-impl Frame {
-    /// Axes in which positions are given, which turn with this angular velocity (in these axes).
-    pub fn base(spin: Vec3) -> Frame {
-        Frame { base: identity(), base_spin: spin, axis: Axis::Pitch, turn: Vec::new() }
-    }
-
-    fn rotation(&self, ring: &mut Ring) -> Mat3 {
-        product(&self.base, &elementary(ring, self.axis, &self.turn))
-    }
-
-    /// Angular velocity in the frame's own axes.
-    fn spin(&self, ring: &mut Ring) -> Vec3 {
-        let turn = elementary(ring, self.axis, &self.turn);
-        let mut spin = [0, 1, 2].map(|i| {
-            let mut sum = Poly::zero();
-            for (row, base) in turn.iter().zip(&self.base_spin) {
-                sum += &(&row[i] * base);
-            }
-            sum
-        });
-        let rates: Vec<Var> = self.turn.iter().filter_map(|q| ring.rate_of(*q)).collect();
-        spin[self.axis.index()] += &ring.sum(&rates);
-        spin
-    }
-
-    /// The frame of a body that turns by `coordinate` about `axis` on this one.
-    fn turned(&self, ring: &mut Ring, axis: Axis, coordinate: Var) -> Frame {
-        let mut next = self.clone();
-        if self.axis != axis && !self.turn.is_empty() {
-            next = Frame { base: self.rotation(ring), base_spin: self.spin(ring), axis, turn: Vec::new() };
-        }
-        next.axis = axis;
-        next.turn.push(coordinate);
-        next
-    }
-}
-
-fn elementary(ring: &mut Ring, axis: Axis, turn: &[Var]) -> Mat3 {
-    let (s, c) = ring.sin_cos(turn);
-    let i = axis.index();
-    let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-    let mut m = identity();
-    m[j][j] = c.clone();
-    m[k][k] = c;
-    m[k][j] = s.clone();
-    m[j][k] = -&s;
-    m
-}
-
-fn identity() -> Mat3 {
-    [0, 1, 2].map(|i| [0, 1, 2].map(|j| if i == j { Poly::constant(1.0) } else { Poly::zero() }))
-}
-
-pub fn zero() -> Vec3 {
-    [Poly::zero(), Poly::zero(), Poly::zero()]
-}
-
-fn product(a: &Mat3, b: &Mat3) -> Mat3 {
-    [0, 1, 2].map(|i| {
-        [0, 1, 2].map(|j| {
-            let mut sum = Poly::zero();
-            for k in 0..3 {
-                sum += &(&a[i][k] * &b[k][j]);
-            }
-            sum
-        })
-    })
-}
-
-pub fn rotate(m: &Mat3, v: &Vec3) -> Vec3 {
-    [0, 1, 2].map(|i| {
-        let mut sum = Poly::zero();
-        for k in 0..3 {
-            sum += &(&m[i][k] * &v[k]);
-        }
-        sum
-    })
-}
-
-pub fn add(a: &Vec3, b: &Vec3) -> Vec3 {
-    [0, 1, 2].map(|i| &a[i] + &b[i])
-}
-
-pub fn subtract(a: &Vec3, b: &Vec3) -> Vec3 {
-    [0, 1, 2].map(|i| &a[i] - &b[i])
-}
-
-pub fn cross(a: &Vec3, b: &Vec3) -> Vec3 {
-    [0, 1, 2].map(|i| {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        &(&a[j] * &b[k]) - &(&a[k] * &b[j])
-    })
-}
-
-pub fn dot(a: &Vec3, b: &Vec3) -> Poly {
-    let mut sum = Poly::zero();
-    for (x, y) in a.iter().zip(b) {
-        sum += &(x * y);
-    }
-    sum
 }

@@ -1,8 +1,8 @@
 //! A mechanism with its symbols and kinematics: what all kernels are derived from.
 
-use super::kinematics::{Coordinates, Kinematics, Vec3, add, cross, dot, subtract, zero};
+use super::kinematics::{Coordinates, Kinematics};
 use super::quantities::Quantities;
-use crate::expr::{Poly, Ring, Var};
+use crate::expr::{Poly, Ring, Var, Vec3, add, cross, dot, subtract, zero};
 use crate::mechanism::{Family, Mechanism};
 use std::collections::BTreeMap;
 
@@ -65,13 +65,17 @@ impl Model {
             Origin::World => self.platform().map(|x| -&x),
             Origin::Foot(leg) => self.foot(leg),
         };
-        self.kinematics.bodies.iter().map(|b| planar(self, subtract(&b.com, &shift))).collect()
+        self.kinematics.bodies.iter().map(|b| subtract(&b.place.com, &shift)).collect()
+    }
+
+    pub fn total_mass(&self) -> Poly {
+        self.kinematics.bodies.iter().fold(Poly::zero(), |sum, body| &sum + &body.mass)
     }
 
     /// First moment of mass about `origin`: total mass times the mass centre of the whole robot.
     pub fn first_moment(&self, origin: Origin) -> Vec3 {
         let mut moment = zero();
-        for (body, centre) in self.quantities.bodies.iter().zip(self.centres(origin)) {
+        for (body, centre) in self.kinematics.bodies.iter().zip(self.centres(origin)) {
             for (sum, c) in moment.iter_mut().zip(&centre) {
                 *sum += &(c * &body.mass);
             }
@@ -81,7 +85,7 @@ impl Model {
 
     /// Mass centre of the whole robot from `origin`.
     pub fn centre_of_mass(&mut self, origin: Origin) -> Vec3 {
-        let total = self.quantities.total_mass();
+        let total = self.total_mass();
         let over_total = self.ring.reciprocal(total);
         self.first_moment(origin).map(|m| &m * &over_total)
     }
@@ -96,8 +100,8 @@ impl Model {
         let centres = self.centres(origin);
         for (b, centre) in centres.iter().enumerate() {
             let velocity = self.rate(centre);
-            let spin = self.kinematics.bodies[b].spin.clone();
-            let angular = scaled(&spin, &self.quantities.bodies[b].inertia);
+            let spin = self.kinematics.bodies[b].place.spin.clone();
+            let angular = scaled(&spin, &self.kinematics.bodies[b].inertia);
             self.project(coordinates, b, centre, &velocity, &angular, &mut momenta);
         }
         self.add_rotors(coordinates, 1, &mut momenta);
@@ -112,8 +116,8 @@ impl Model {
             let velocity = self.rate(centre);
             let mut acceleration = self.rate(&velocity);
             acceleration[1] += &self.quantities.gravity;
-            let spin = self.kinematics.bodies[b].spin.clone();
-            let angular = scaled(&spin, &self.quantities.bodies[b].inertia);
+            let spin = self.kinematics.bodies[b].place.spin.clone();
+            let angular = scaled(&spin, &self.kinematics.bodies[b].inertia);
             let moment = add(&self.rate(&angular), &cross(&spin, &angular));
             self.project(coordinates, b, centre, &acceleration, &moment, &mut forces);
         }
@@ -130,8 +134,8 @@ impl Model {
             let velocity = self.rate(centre);
             let mut acceleration = self.rate(&velocity);
             acceleration[1] += &self.quantities.gravity;
-            let body = &self.quantities.bodies[b];
-            let spin = &self.kinematics.bodies[b].spin[2] * &body.inertia[2][2];
+            let body = &self.kinematics.bodies[b];
+            let spin = &body.place.spin[2] * &body.inertia[2][2];
             sigma += &(&cross(centre, &velocity)[2] * &body.mass);
             sigma += &spin;
             balance += &(&cross(centre, &acceleration)[2] * &body.mass);
@@ -150,8 +154,8 @@ impl Model {
         angular: &Vec3,
         sums: &mut [Poly],
     ) {
-        let mass = &self.quantities.bodies[b].mass;
-        let spin = &self.kinematics.bodies[b].spin;
+        let mass = &self.kinematics.bodies[b].mass;
+        let spin = &self.kinematics.bodies[b].place.spin;
         for (sum, [x, xd, _]) in sums.iter_mut().zip(coordinates) {
             let partial_velocity = [0, 1, 2].map(|i| self.ring.derivative(&centre[i], *x));
             *sum += &(&dot(&partial_velocity, linear) * mass);
@@ -225,12 +229,4 @@ impl Model {
 /// Inertia times a vector in the body's axes.
 pub fn scaled(v: &Vec3, inertia: &[Vec3; 3]) -> Vec3 {
     [0, 1, 2].map(|i| dot(v, &inertia[i]))
-}
-
-/// In a planar gait all bodies move in the sagittal plane: z does not matter.
-fn planar(model: &Model, mut v: Vec3) -> Vec3 {
-    if !model.mechanism.lateral {
-        v[2] = Poly::zero();
-    }
-    v
 }

@@ -9,6 +9,7 @@ pub struct Quantities {
     /// All of them.
     pub numbers: Vec<Poly>,
     pub gravity: Poly,
+    /// Of the real robot's bodies in the order of [`Mechanism::tree`].
     pub bodies: Vec<BodyQuantities>,
     /// Of each joint, seen at the joint.
     pub rotor_inertia: Vec<Poly>,
@@ -38,6 +39,11 @@ pub struct BodyQuantities {
 }
 
 impl BodyQuantities {
+    fn read(one: &mut impl FnMut() -> Poly) -> BodyQuantities {
+        let (offset, mass, com) = (vector(one), one(), vector(one));
+        BodyQuantities { offset, mass, com, inertia: [(); 3].map(|()| vector(one)) }
+    }
+
     pub fn constant(body: &Body) -> BodyQuantities {
         BodyQuantities {
             offset: body.offset.map(Poly::constant),
@@ -70,40 +76,33 @@ impl Quantities {
         let mut rest = numbers.iter().cloned();
         let mut one = || rest.next().unwrap_or_default();
         let gravity = one();
-        let mut bodies = Vec::new();
-        for _ in &mechanism.bodies {
-            let offset = [(); 3].map(|()| one());
-            let mass = one();
-            bodies.push(BodyQuantities {
-                offset,
-                mass,
-                com: [(); 3].map(|()| one()),
-                inertia: [(); 3].map(|()| [(); 3].map(|()| one())),
-            });
-        }
+        // What is asked of bodies put together is where they hang: what they weigh, the real ones say.
+        let together: Vec<BodyQuantities> = mechanism.bodies.iter().map(|_| BodyQuantities::read(&mut one)).collect();
         let rotor_inertia = mechanism.joints.iter().map(|_| one()).collect();
+        let mut bodies = together[..1].to_vec();
         let mut members = [Vec::new(), Vec::new()];
         let feet = [0, 1].map(|leg| {
-            let foot = [(); 3].map(|()| one());
-            for member in &mechanism.legs[leg].members {
-                // Of the members matter the places of their joints: the dynamics are those of the virtual leg.
-                let mut offset = || {
-                    let offset = [(); 3].map(|()| one());
-                    (3..Body::COUNT).for_each(|_| drop(one()));
-                    offset
-                };
-                let offsets = member.bodies.iter().map(|_| offset()).collect();
-                (0..3).for_each(|_| drop(one()));
-                let spots = member.spots.iter().map(|_| [(); 3].map(|()| one())).collect();
+            let foot = vector(&mut one);
+            let of = &mechanism.legs[leg];
+            let mut links: Vec<Vec<BodyQuantities>> = Vec::new();
+            for member in &of.members {
+                let own: Vec<_> = member.bodies.iter().map(|_| BodyQuantities::read(&mut one)).collect();
+                let offsets = own.iter().map(|link| link.offset.clone()).collect();
+                links.push(own);
+                vector(&mut one);
+                let spots = member.spots.iter().map(|_| vector(&mut one)).collect();
                 members[leg].push(MemberQuantities { offsets, spots });
             }
+            let hip = &together[of.first_body()].offset;
+            links.iter_mut().filter_map(|links| links.first_mut()).for_each(|first| first.offset = hip.clone());
+            bodies.extend((0..of.joints.len()).flat_map(|depth| links.iter().map(move |links| links[depth].clone())));
             foot
         });
-        let corners = mechanism.corners.iter().map(|_| [(); 3].map(|()| one())).collect();
+        let corners = mechanism.corners.iter().map(|_| vector(&mut one)).collect();
         Quantities { numbers, gravity, bodies, rotor_inertia, feet, members, corners }
     }
+}
 
-    pub fn total_mass(&self) -> Poly {
-        self.bodies.iter().fold(Poly::zero(), |sum, body| &sum + &body.mass)
-    }
+fn vector(one: &mut impl FnMut() -> Poly) -> [Poly; 3] {
+    [(); 3].map(|()| one())
 }

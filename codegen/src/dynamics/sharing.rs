@@ -7,9 +7,8 @@
 
 use super::curvature::second_derivatives;
 use super::kernel::Kernel;
-use super::kinematics::{Vec3, add, cross, dot, rotate, zero};
 use super::model::{Model, Origin, scaled};
-use crate::expr::{Poly, Var};
+use crate::expr::{Poly, Var, Vec3, add, cross, dot, rotate, zero};
 use std::collections::BTreeMap;
 
 /// Kernels for stance on `leg` of a gait whose platform rolls.
@@ -49,11 +48,11 @@ fn moment(model: &mut Model, leg: usize) -> [Poly; 2] {
         let velocity = model.rate(centre);
         let mut force = model.rate(&velocity);
         force[1] += &model.quantities.gravity;
-        let force = force.map(|f| &f * &model.quantities.bodies[b].mass);
-        let spin = model.kinematics.bodies[b].spin.clone();
-        let angular = scaled(&spin, &model.quantities.bodies[b].inertia);
+        let force = force.map(|f| &f * &model.kinematics.bodies[b].mass);
+        let spin = model.kinematics.bodies[b].place.spin.clone();
+        let angular = scaled(&spin, &model.kinematics.bodies[b].inertia);
         let own = add(&model.rate(&angular), &cross(&spin, &angular));
-        let own = rotate(&model.kinematics.bodies[b].axes, &own);
+        let own = rotate(&model.kinematics.bodies[b].place.axes, &own);
         sum = add(&sum, &add(&cross(centre, &force), &own));
     }
     let [_, y, z] = sum;
@@ -77,19 +76,19 @@ pub fn landing(model: &mut Model, leg: usize, platform: &Vec3, after: &BTreeMap<
     let mut turn = zero();
     for (b, centre) in model.centres(Origin::Foot(leg)).iter().enumerate() {
         let about = model.rate(centre);
-        let relative = model.kinematics.bodies[b].com.clone();
+        let relative = model.kinematics.bodies[b].place.com.clone();
         let before = add(&model.rate(&relative), platform);
-        let spin = model.kinematics.bodies[b].spin.clone();
-        let angular = scaled(&spin, &model.quantities.bodies[b].inertia);
-        let angular = rotate(&model.kinematics.bodies[b].axes, &angular);
+        let spin = model.kinematics.bodies[b].place.spin.clone();
+        let angular = scaled(&spin, &model.kinematics.bodies[b].inertia);
+        let angular = rotate(&model.kinematics.bodies[b].place.axes, &angular);
         let mut change = |later: &Vec3, before: &Vec3| -> Vec3 {
             [0, 1, 2].map(|i| &model.ring.substitute(&later[i], after) - &before[i])
         };
         let (linear, own) = (change(&about, &before), change(&angular, &angular));
-        let mass = &model.quantities.bodies[b].mass;
+        let mass = &model.kinematics.bodies[b].mass;
         turn = add(&turn, &add(&cross(centre, &linear.map(|v| &v * mass)), &own));
     }
-    let axes = &model.kinematics.bodies[0].axes;
+    let axes = &model.kinematics.bodies[0].place.axes;
     let [yaw, pitch] = [1, 2].map(|axis| dot(&[0, 1, 2].map(|i| axes[i][axis].clone()), &turn));
     [-&(&yaw * &axes[1][2]), -&(&yaw * &axes[2][2]), pitch]
 }

@@ -5,11 +5,10 @@
 //! the generalized forces of q are the torques alone: `Aq q̈ + Hq = Dq Γ`.
 
 use super::kernel::Kernel;
-use super::kinematics::subtract;
 use super::model::{Model, Origin};
 use super::solve::Factors;
 use super::turn::Turn;
-use crate::expr::{Poly, Var};
+use crate::expr::{Poly, Var, subtract};
 use crate::spec::Rotation;
 use std::collections::BTreeMap;
 
@@ -38,7 +37,7 @@ impl Stance<'_> {
         let moment = model.first_moment(origin);
         let momentum = model.rate(&moment);
         let mut force = model.rate(&momentum);
-        force[1] += &(&model.quantities.total_mass() * &model.quantities.gravity);
+        force[1] += &(&model.total_mass() * &model.quantities.gravity);
         let reaction = model.components(&force);
         Stance { forces, inertia, bias, reaction, turn }
     }

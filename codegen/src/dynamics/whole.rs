@@ -7,10 +7,10 @@
 //! ∂r/∂q for the point at r from the platform's mass centre.
 
 use super::kernel::Kernel;
-use super::kinematics::{Frame, Tree, Vec3, add, cross, dot, zero};
+use super::kinematics::Tree;
 use super::model::scaled;
 use super::quantities::BodyQuantities;
-use crate::expr::{Poly, Ring, Var};
+use crate::expr::{Frame, Poly, Ring, Var, Vec3, add, cross, dot, zero};
 use crate::mechanism::Whole;
 use std::collections::BTreeMap;
 

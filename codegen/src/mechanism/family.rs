@@ -1,7 +1,7 @@
 //! A mechanism whose numbers are expressions in parameters of the real robot.
 //!
-//! Where legs that move as one share their links, the reduction to virtual legs takes sums, means and
-//! multiples: it is affine in the robot's numbers. So its coefficients are what it makes of unit robots,
+//! Where legs that move as one share their links, the mechanism's numbers are sums, means and
+//! multiples of the robot's: affine in them. So its coefficients are what it makes of unit robots,
 //! in which one number is 1 and all others are 0.
 
 use super::Mechanism;

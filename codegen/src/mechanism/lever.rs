@@ -5,7 +5,7 @@
 //! makes no robot that can walk so. So the numbers that these legs have in the same place are one lever ([`Lever::numbers`]), which
 //! changes all of them by the same share; numbers that are zero, by as much.
 //!
-//! Where virtual legs share their links the reduction is affine in the robot's numbers, but a gear enters squared,
+//! Where virtual legs share their links the mechanism's numbers are affine in the robot's, but a gear enters squared,
 //! and links that a locked joint joins have a common mass centre. So slopes are taken at the specification's values,
 //! by differences that leave rounding only.
 

@@ -1,24 +1,23 @@
-//! From the specification to a mechanism: one tree of rigid bodies per gait, with numbers.
-//!
-//! This is where virtual legs come from (§2.1): the real legs that move together become one leg
-//! whose hip is the mean of their mounts and whose masses and inertias are their sums ([`Robot::virtual_leg`]).
+//! From the specification to a mechanism: the real robot (`robot`) as a gait moves it (`embedding`), with numbers.
 
+mod embedding;
 mod family;
 mod lever;
 mod names;
 mod parameter;
 mod points;
-mod whole;
+mod robot;
 
+pub use embedding::{Member, VirtualLeg};
 pub use family::Family;
 pub use lever::{Lever, levers};
 pub use parameter::{Parameter, Sign, parameters, select, with};
 pub use points::{Point, Spot, points};
-pub use whole::{Whole, WholeJoint, WholeLeg};
+pub use robot::{Body, Whole, WholeJoint, WholeLeg};
 
-use crate::spec::{Axis, Gait, HalfSteps, Inertia, Joint, Leg, Limits, Robot, Rotation, Segment, Unactuated};
+use crate::spec::{Gait, HalfSteps, Joint, Limits, Robot, Rotation, Unactuated};
 
-/// The tree of rigid bodies of one gait's model; SI units, body axes x forward, y up, z right.
+/// A robot as one gait moves it; SI units, body axes x forward, y up, z right.
 #[derive(Clone, Debug)]
 pub struct Mechanism {
     pub gait: String,
@@ -28,7 +27,7 @@ pub struct Mechanism {
     /// Whether the platform moves along z as well as x and y.
     pub lateral: bool,
     pub rotation: Rotation,
-    /// Parents precede children; body 0 is the platform.
+    /// The platform, then of each virtual leg its links from the platform down, those that move alike put together.
     pub bodies: Vec<Body>,
     /// Corners of what the platform fills.
     pub corners: Vec<Spot>,
@@ -40,23 +39,6 @@ pub struct Mechanism {
     pub half_steps: HalfSteps,
     pub polynomial_order: usize,
     pub limits: Limits,
-}
-
-/// A rigid body and the joint that carries it.
-#[derive(Clone, Debug)]
-pub struct Body {
-    pub name: String,
-    pub parent: Option<usize>,
-    /// Index of its joint's coordinate in q; `None` for the platform.
-    pub coordinate: Option<usize>,
-    pub axis: Axis,
-    /// Its joint in the parent's axes, from the parent's joint (from the mass centre for the platform), m.
-    pub offset: [f64; 3],
-    pub mass: f64,
-    /// Mass centre from its own joint, in its own axes, m.
-    pub com: [f64; 3],
-    /// About the mass centre in its own axes, kg·m².
-    pub inertia: Inertia,
 }
 
 /// An actuated joint of a virtual leg, seen at the joint: N·m, rad/s.
@@ -72,60 +54,12 @@ pub struct Actuated {
     pub rotor_inertia: f64,
 }
 
-/// A virtual leg: which joints it has and where its foot is.
-#[derive(Clone, Debug)]
-pub struct VirtualLeg {
-    /// The real legs that it stands for.
-    pub members: Vec<Member>,
-    pub joints: std::ops::Range<usize>,
-    pub foot_body: usize,
-    /// Foot from the joint of `foot_body`, in its axes, m.
-    pub foot: [f64; 3],
-}
-
-/// A real leg: its own links, which move as those of the virtual leg.
-#[derive(Clone, Debug)]
-pub struct Member {
-    pub name: String,
-    /// From the platform down, under the names that are theirs alone. The parent of the first is the platform, of the others the
-    /// link before.
-    pub bodies: Vec<Body>,
-    /// Names of its joints, theirs alone.
-    pub joints: Vec<String>,
-    /// Foot from the last joint, m.
-    pub foot: [f64; 3],
-    /// Its joints, also those that the gait holds still.
-    pub spots: Vec<Spot>,
-}
-
 impl Mechanism {
-    /// Builds the virtual-leg model of `gait`. Both must have passed validation, and the robot must be
+    /// The robot in the coordinates of `gait`. Both must have passed validation, and the robot must be
     /// one whose locked joints are gone ([`Robot::locked`]).
     pub fn new(robot: &Robot, gait: &Gait) -> Mechanism {
-        let mut bodies = vec![Body::platform(robot)];
-        let mut joints = Vec::new();
-        let (link_names, joint_names) = (names::links(robot), names::joints(robot));
-        let legs = [0, 1].map(|k| {
-            let from_centre = |mount: &[f64; 3]| [0, 1, 2].map(|axis| mount[axis] - robot.platform.com[axis]);
-            let (first, body) = (joints.len(), bodies.len());
-            let members = gait.virtual_legs[k].iter().map(|i| {
-                let leg = &robot.legs[*i];
-                let (mut links, foot) = chain(leg, from_centre(&leg.mount), 1, first);
-                links.iter_mut().zip(&link_names[*i]).for_each(|(link, name)| link.name.clone_from(name));
-                let spots = points::joints(robot, *i, &joint_names[*i]);
-                Member { name: leg.name.clone(), bodies: links, joints: joint_names[*i].clone(), foot, spots }
-            });
-            let members = members.collect();
-            let leg = robot.virtual_leg(&gait.virtual_legs[k]);
-            let (mut links, foot) = chain(&leg, from_centre(&leg.mount), body, first);
-            for (link, segment) in links.iter_mut().zip(&leg.chain) {
-                link.name += &(k + 1).to_string();
-                joints.push(Actuated::new(&segment.joint, k + 1, gait.virtual_legs[k].len()));
-            }
-            bodies.extend(links);
-            let foot_body = bodies.len() - 1;
-            VirtualLeg { members, joints: first..joints.len(), foot_body, foot }
-        });
+        let (mut bodies, mut joints) = (vec![Body::platform(robot)], Vec::new());
+        let legs = [0, 1].map(|k| VirtualLeg::new(robot, &gait.virtual_legs[k], k + 1, &mut joints, &mut bodies));
         let unactuated = match gait.unactuated {
             Unactuated::Platform => joints.len(),
             Unactuated::Joint { leg, joint } => legs[leg].joints.start + joint,
@@ -235,37 +169,6 @@ impl Mechanism {
     /// Where the platform does not rotate, the torque of the unactuated joint keeps it level (eq. 1).
     pub fn independent_torques(&self) -> Vec<usize> {
         (0..self.joints.len()).filter(|j| *j != self.unactuated).collect()
-    }
-}
-
-/// Bodies of a leg that hangs at `mount`, numbered from `first_body` and with coordinates from `first_joint`; and
-/// its foot from the last joint.
-fn chain(leg: &Leg, mount: [f64; 3], first_body: usize, first_joint: usize) -> (Vec<Body>, [f64; 3]) {
-    let mut offset = mount;
-    let bodies = leg.chain.iter().enumerate().map(|(i, Segment { joint, link })| {
-        let parent = if i == 0 { 0 } else { first_body + i - 1 };
-        let at = std::mem::replace(&mut offset, link.end);
-        Body {
-            name: link.name.clone(),
-            parent: Some(parent),
-            coordinate: Some(first_joint + i),
-            axis: joint.axis,
-            offset: at,
-            mass: link.mass,
-            com: link.com,
-            inertia: link.inertia,
-        }
-    });
-    (bodies.collect(), offset)
-}
-
-impl Body {
-    /// How many numbers are measured of a body.
-    pub const COUNT: usize = 3 + 1 + 3 + 9;
-
-    fn numbers(&self) -> [f64; Body::COUNT] {
-        let ([x, y, z], [u, v, w], [a, b, c]) = (self.offset, self.com, self.inertia);
-        [x, y, z, self.mass, u, v, w, a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]]
     }
 }
 

@@ -85,12 +85,12 @@ fn carried_axis(rotation: &Rotation3, axis: Axis) -> Option<Axis> {
 }
 
 impl Link {
-    pub(super) fn rigid(&self) -> Rigid {
+    pub(crate) fn rigid(&self) -> Rigid {
         Rigid { mass: self.mass, com: self.com, inertia: self.inertia }
     }
 
     /// Gives the link this mass, mass centre and inertia.
-    pub(super) fn put(&mut self, body: &Rigid) {
+    pub(crate) fn put(&mut self, body: &Rigid) {
         (self.mass, self.com, self.inertia) = (body.mass, body.com, body.inertia);
     }
 }

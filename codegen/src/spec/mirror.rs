@@ -2,13 +2,13 @@
 //! the virtual legs exchange their roles, one must be for the other what it is itself, or its mirror image.
 
 use super::Code;
+use super::as_one::Unlike;
 use super::diagnostic::Sink;
 use super::format::DIRECTIONS;
 use super::gait::RawGait;
 use super::pairing::place;
 use super::robot::RobotFile;
 use super::types::HalfSteps;
-use super::virtual_leg::{Likeness, moves_unlike, weighs_unlike};
 
 /// Mirrored half steps: the virtual legs are alike and their hips at the same place; where the platform
 /// rolls, they are mirror images.
@@ -19,25 +19,16 @@ pub(super) fn check(raw: &RawGait, legs: &[Vec<usize>; 2], robot: &RobotFile, si
     let (Some(&second), HalfSteps::Mirrored) = (legs[1].first(), half_steps.value) else {
         return;
     };
-    let likeness = Likeness::of_exchange(rotation.value);
-    let [a, b] = [&legs[0], &legs[1]].map(|members| robot.robot.virtual_leg(members));
-    let com = robot.robot.platform.com;
-    let [hip_a, hip_b] = [&a, &b].map(|leg| [0, 1, 2].map(|k| leg.mount[k] - com[k]));
-    let hips = || {
-        likeness.apart(&hip_a, &hip_b, a.length()).map(|k| {
+    let (why, label) = match robot.robot.exchange(legs, rotation.value) {
+        None => return,
+        Some(Unlike::Link(why)) => (why, place(robot, second, |p| &p.name, "a leg of virtual leg 2")),
+        Some(Unlike::Mount(k)) => {
+            let [a, b] = [0, 1].map(|leg| robot.robot.hip(&legs[leg])[k]);
             let at = DIRECTIONS[k];
-            let (a, b) = (hip_a[k], hip_b[k]);
-            format!("the hips of the virtual legs are at {at} = {a:.4} and {at} = {b:.4} from the mass centre")
-        })
-    };
-    let (why, label) = if let Some(why) = moves_unlike(&a, &b, likeness) {
-        (why, place(robot, second, |p| &p.name, "a leg of virtual leg 2"))
-    } else if let Some(why) = weighs_unlike(&a, &b, likeness) {
-        (why, place(robot, second, |p| &p.name, "a leg of virtual leg 2"))
-    } else if let Some(why) = hips() {
-        (why, place(robot, second, |p| &p.mount, "a mount of virtual leg 2"))
-    } else {
-        return;
+            let why =
+                format!("the hips of the virtual legs are at {at} = {a:.4} and {at} = {b:.4} from the mass centre");
+            (why, place(robot, second, |p| &p.mount, "a mount of virtual leg 2"))
+        }
     };
     let title = format!("the half steps cannot mirror each other: {why}");
     let help = "write half_steps = \"distinct\", choose other virtual legs, or correct their mounts";

@@ -6,7 +6,7 @@
 //! satisfy beyond its form is checked in `bodies.rs`, `tree.rs`, `chain.rs` (robot), `pairing.rs`, `mirror.rs` and
 //! `coordinates.rs` (gait).
 //!
-//! What gaits make of legs is in `locked.rs` (joints held still) and `virtual_leg.rs` (legs that move as one).
+//! What gaits make of legs is in `locked.rs` (joints held still) and `as_one.rs` (legs that move as one).
 //!
 //! A quantity with a unit never has a default, but where absence says all there is: a platform's mass centre
 //! lies at the origin of the frame of the legs' mounts unless `com` says otherwise, axes are principal ones
@@ -16,6 +16,7 @@
 //! pitch, a leg's `first_joint` is the only joint that hangs on the platform, a gait's `name` is its file's
 //! name, its `polynomial_order` is 4, and it locks no joints.
 
+mod as_one;
 mod bodies;
 mod chain;
 mod code;
@@ -39,7 +40,6 @@ mod syntax;
 mod tree;
 mod types;
 mod view;
-mod virtual_leg;
 
 #[cfg(test)]
 mod tests;

@@ -2,6 +2,7 @@
 //! lengths of its legs and the sums of their masses, inertias and torques.
 
 use super::Code;
+use super::as_one::{Motion, Unlike, driven_unlike};
 use super::decode::Names;
 use super::diagnostic::{Label, Sink, Span};
 use super::format::DIRECTIONS;
@@ -9,7 +10,6 @@ use super::gait::RawGait;
 use super::nearest::nearest;
 use super::robot::RobotFile;
 use super::types::{Leg, Rotation};
-use super::virtual_leg::{Likeness, SAME, moves_unlike};
 
 /// Resolves the two virtual legs: indices into the robot's legs. `at` is where the key stands.
 pub(super) fn virtual_legs(raw: &RawGait, at: &Span, robot: &RobotFile, sink: &mut Sink) -> Option<[Vec<usize>; 2]> {
@@ -113,7 +113,14 @@ fn check_pair(raw: &RawGait, list: &Names, legs: &[usize], robot: &RobotFile, si
     let mut good = true;
     for (&leg, name) in legs.iter().zip(&list.value).skip(1) {
         let rotation = raw.rotation.as_ref().map_or(Rotation::None, |r| r.value);
-        if let Some(why) = moves_unlike(&all[lead], &all[leg], Likeness::of_pair(rotation)) {
+        let unlike = match driven_unlike(&all[lead], &all[leg], false) {
+            Some(why) => Some(Unlike::Link(why)),
+            None => {
+                let [a, b] = [lead, leg].map(|leg| &all[leg]);
+                Motion::new(a, rotation).feet(&a.places(a.mount), &b.places(b.mount)).move_apart(a, b)
+            }
+        };
+        if let Some(Unlike::Link(why)) = unlike {
             let title = format!("legs `{}` and `{}` cannot move as one: {why}", all[lead].name, all[leg].name);
             let label = format!("has the joints {}", joints(&all[leg]).join(", "));
             let help = format!(
@@ -125,14 +132,7 @@ fn check_pair(raw: &RawGait, list: &Names, legs: &[usize], robot: &RobotFile, si
             good = false;
             continue;
         }
-        let shared: &[usize] = match rotation {
-            Rotation::None => &[1],
-            Rotation::Pitch => &[0, 1],
-            Rotation::Roll => &[1, 2],
-        };
-        let apart =
-            shared.iter().find(|&&k| (all[leg].mount[k] - all[lead].mount[k]).abs() > SAME * all[lead].length());
-        if let Some(&k) = apart {
+        if let Some(Unlike::Mount(k)) = unlike {
             let title = format!("legs `{}` and `{}` cannot move as one", all[lead].name, all[leg].name);
             let label = format!("mounted at another {} than `{}`", DIRECTIONS[k], all[lead].name);
             let help = match rotation {

@@ -8,7 +8,7 @@ pub(super) const IDENTITY: Rotation3 = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 
 
 /// Mass, mass centre and inertia about it, in one frame; kg, m, kg·m².
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Rigid {
+pub(crate) struct Rigid {
     pub mass: f64,
     pub com: [f64; 3],
     pub inertia: Inertia,

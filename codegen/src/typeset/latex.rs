@@ -106,7 +106,7 @@ impl<'m> Notation<'m> {
             format!("\\varphi_{{{}}} &= {}", k + 1, sum.join(" + "))
         });
         let mut lines: Vec<String> = sums.collect();
-        let mass = self.model.quantities.total_mass();
+        let mass = self.model.total_mass();
         lines.push(format!("M &= {}", self.sum(&mass)));
         text.push_str(&lines.join(" \\\\\n"));
         text.push_str("\n\\end{align*}\n");
@@ -185,7 +185,7 @@ impl<'m> Notation<'m> {
     }
 
     fn is_mass(&self, p: &Poly) -> bool {
-        p.len() > 1 && *p == self.model.quantities.total_mass()
+        p.len() > 1 && *p == self.model.total_mass()
     }
 
     fn sum(&self, p: &Poly) -> String {
@@ -231,7 +231,7 @@ impl<'m> Notation<'m> {
             Kind::Symbol(name) => format!("\\mathrm{{{}}}", escaped(&name)),
             Kind::Sin(angle) => short(&angle, "S"),
             Kind::Cos(angle) => short(&angle, "C"),
-            Kind::Reciprocal(p) if p == self.model.quantities.total_mass() => "M^{-1}".into(),
+            Kind::Reciprocal(p) if p == self.model.total_mass() => "M^{-1}".into(),
             Kind::Reciprocal(p) => format!("\\left({}\\right)^{{-1}}", self.sum(&p)),
             Kind::Bound(p) => self.rate(&p).unwrap_or_else(|| format!("\\left({}\\right)", self.sum(&p))),
         }

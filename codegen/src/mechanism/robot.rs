@@ -1,9 +1,9 @@
-//! The whole robot: its platform, free to move and turn in space, with every real leg.
+//! The real robot, once: a tree of rigid bodies. [`Whole`] is all of it, its platform free to move and turn in space.
 //!
 //! It belongs to no gait. What the virtual legs of a gait stand for can be checked against it.
 
-use super::{Body, chain, names};
-use crate::spec::{Axis, Robot};
+use super::names;
+use crate::spec::{Axis, Inertia, Leg, Robot, Segment};
 
 /// The tree of rigid bodies of the real robot; SI units, body axes x forward, y up, z right.
 #[derive(Clone, Debug)]
@@ -64,7 +64,53 @@ impl Whole {
     }
 }
 
+/// A rigid body and the joint that carries it.
+#[derive(Clone, Debug)]
+pub struct Body {
+    pub name: String,
+    pub parent: Option<usize>,
+    /// Index of its joint's coordinate in q; `None` for the platform.
+    pub coordinate: Option<usize>,
+    pub axis: Axis,
+    /// Its joint in the parent's axes, from the parent's joint (from the mass centre for the platform), m.
+    pub offset: [f64; 3],
+    pub mass: f64,
+    /// Mass centre from its own joint, in its own axes, m.
+    pub com: [f64; 3],
+    /// About the mass centre in its own axes, kg·m².
+    pub inertia: Inertia,
+}
+
+/// Bodies of a leg that hangs at `mount`, numbered from `first_body` and with coordinates from `first_joint`; and
+/// its foot from the last joint.
+pub(super) fn chain(leg: &Leg, mount: [f64; 3], first_body: usize, first_joint: usize) -> (Vec<Body>, [f64; 3]) {
+    let mut offset = mount;
+    let bodies = leg.chain.iter().enumerate().map(|(i, Segment { joint, link })| {
+        let parent = if i == 0 { 0 } else { first_body + i - 1 };
+        let at = std::mem::replace(&mut offset, link.end);
+        Body {
+            name: link.name.clone(),
+            parent: Some(parent),
+            coordinate: Some(first_joint + i),
+            axis: joint.axis,
+            offset: at,
+            mass: link.mass,
+            com: link.com,
+            inertia: link.inertia,
+        }
+    });
+    (bodies.collect(), offset)
+}
+
 impl Body {
+    /// How many numbers are measured of a body.
+    pub const COUNT: usize = 3 + 1 + 3 + 9;
+
+    pub(super) fn numbers(&self) -> [f64; Body::COUNT] {
+        let ([x, y, z], [u, v, w], [a, b, c]) = (self.offset, self.com, self.inertia);
+        [x, y, z, self.mass, u, v, w, a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]]
+    }
+
     /// The platform, its mass centre at the origin of its axes.
     pub(super) fn platform(robot: &Robot) -> Body {
         Body {
