@@ -5,6 +5,7 @@ use super::kernel::Kernel;
 use super::model::Model;
 use super::turn::Turn;
 use crate::expr::Poly;
+use crate::mechanism::Mode;
 
 /// An equation: its left-hand side as LaTeX, its right-hand side, and what it is.
 pub struct Equation {
@@ -45,7 +46,7 @@ pub fn closed_forms(model: &mut Model) -> Vec<Section> {
         sections.push(section(&format!("Foot of leg {i} (eq. 2--4)"), foot.into_iter()));
     }
     for leg in 0..2 {
-        let turn = Turn::new(model, leg);
+        let turn = Turn::new(model, Mode::Stance(leg));
         let terms = [(r"f_1", turn.f1), (r"f_2", turn.f2), (r"c", turn.c), (r"\dot\sigma", turn.gravity_moment)];
         let title = format!(r"Support on leg {}: $\sigma = f_1\dot\beta + f_2$ (eq. 8, 9)", leg + 1);
         sections.push(section(&title, terms.into_iter().map(|(left, p)| (left.to_string(), p))));

@@ -6,19 +6,16 @@
 //! the balance of eq. 10: the platform's row where it turns, else a turn of the whole robot.
 
 use super::kernel::Kernel;
+use super::mode::swinging;
 use super::model::{Model, Origin, scaled};
-use super::solve::Factors;
 use super::turn::Turn;
-use crate::expr::{Poly, Var, Vec3, add, cross, dot, subtract};
+use crate::expr::{Poly, Var, Vec3, add, cross, dot};
+use crate::mechanism::Mode;
 use crate::spec::Rotation;
 use std::collections::BTreeMap;
 
-/// Kernels of the Hessian for stance on `leg`, and for the impact on `leg`.
-pub fn kernels(model: &mut Model, leg: usize, turn: &Turn) -> Vec<Kernel> {
-    vec![instant(model, leg, turn), touchdown(model, leg)]
-}
-
-fn symbols(model: &mut Model, name: &str, count: usize) -> Vec<Var> {
+/// `count` symbols of one name.
+pub fn symbols(model: &mut Model, name: &str, count: usize) -> Vec<Var> {
     (0..count).map(|k| model.ring.symbol(format!("{name}{k}"))).collect()
 }
 
@@ -28,18 +25,19 @@ fn with_rates(model: &mut Model, v: &Vec3, by: &BTreeMap<Var, Poly>) -> Vec3 {
 }
 
 /// Virtual power of the generalized forces in the virtual rates `n`, and of the reaction in `phi`.
-fn virtual_power(model: &mut Model, leg: usize, n: &[Var], phi: &[Var]) -> Poly {
+fn virtual_power(model: &mut Model, origin: Origin, n: &[Var], phi: &[Var]) -> Poly {
     let rename: BTreeMap<Var, Poly> = model.q(1).into_iter().zip(n.iter().map(|v| Poly::from(*v))).collect();
     let mut translation = [Poly::zero(), Poly::zero(), Poly::zero()];
     for (slot, symbol) in translation.iter_mut().zip(phi) {
         *slot = (*symbol).into();
     }
+    let gravity = model.gravity(origin);
     let mut power = Poly::zero();
-    for (b, centre) in model.centres(Origin::Foot(leg)).iter().enumerate() {
+    for (b, centre) in model.centres(origin).iter().enumerate() {
         let body = model.kinematics.bodies[b].clone();
         let velocity = model.rate(centre);
         let mut acceleration = model.rate(&velocity);
-        acceleration[1] += &model.quantities.gravity;
+        acceleration[1] += &gravity;
         let spin = model.kinematics.bodies[b].place.spin.clone();
         let mut virtual_velocity = add(&with_rates(model, &velocity, &rename), &translation);
         let mut virtual_spin = with_rates(model, &spin, &rename);
@@ -66,46 +64,67 @@ fn virtual_power(model: &mut Model, leg: usize, n: &[Var], phi: &[Var]) -> Poly 
 pub struct Instant {
     /// Weights of the torques of the joints, then of the balance.
     pub n: Vec<Var>,
-    /// Weights of the reaction.
+    /// Weights of the reaction, if there is one.
     pub phi: Vec<Var>,
-    /// Weights of σ, σ̇, the swing foot's height, the platform's x, the swing foot's vertical velocity and the
-    /// platform's height.
+    /// Weights of σ and σ̇, of the heights of the feet in the air, of the platform's x, of the vertical velocities of these feet,
+    /// and of the platform's height. In flight there is no σ̇.
     pub others: Vec<Var>,
     pub sum: Poly,
 }
 
 impl Instant {
-    pub fn new(model: &mut Model, leg: usize, turn: &Turn) -> Instant {
+    pub fn new(model: &mut Model, mode: Mode, turn: &Turn) -> Instant {
+        let stands = mode != Mode::Flight;
+        let swing = swinging(model, mode);
         let n = symbols(model, "n", model.mechanism.joints.len() + 1);
-        let phi = symbols(model, "phi", model.mechanism.positions());
-        let others = symbols(model, "w", 6);
-        let mut sum = virtual_power(model, leg, &n, &phi);
-        let swing = subtract(&model.foot(1 - leg), &model.foot(leg));
-        let swing_rate = model.rate(&swing);
-        let platform = model.foot(leg).map(|x| -&x);
-        let terms = [&turn.sigma, &turn.gravity_moment, &swing[1], &platform[0], &swing_rate[1], &platform[1]];
+        let phi = symbols(model, "phi", if stands { model.mechanism.positions() } else { 0 });
+        let count = 3 + usize::from(stands) + 2 * swing.len();
+        let others = symbols(model, "w", count);
+        let mut sum = virtual_power(model, mode.into(), &n, &phi);
+        let rates: Vec<Vec3> = swing.iter().map(|foot| model.rate(foot)).collect();
+        let platform = model.place(mode.into()).map(|x| -&x);
+        let mut terms = vec![&turn.sigma];
+        terms.extend(Some(&turn.gravity_moment).filter(|_| stands));
+        terms.extend(swing.iter().map(|foot| &foot[1]));
+        terms.push(&platform[0]);
+        terms.extend(rates.iter().map(|rate| &rate[1]));
+        terms.push(&platform[1]);
         for (weight, term) in others.iter().zip(terms) {
             sum += &(&Poly::from(*weight) * term);
         }
         Instant { n, phi, others, sum }
     }
+
+    /// The kernel with the state and the weights as its inputs.
+    pub fn inputs(&self, model: &Model, kernel: Kernel) -> Kernel {
+        let kernel = kernel.input("q", model.q(0)).input("qd", model.q(1)).input("qdd", model.q(2));
+        let kernel = kernel.input("n", self.n.clone());
+        let kernel = if self.phi.is_empty() { kernel } else { kernel.input("phi", self.phi.clone()) };
+        kernel.input("others", self.others.clone())
+    }
 }
 
-fn instant(model: &mut Model, leg: usize, turn: &Turn) -> Kernel {
-    let Instant { n, phi, others, sum } = Instant::new(model, leg, turn);
+/// The Hessian of an instant.
+pub fn kernel(model: &mut Model, mode: Mode, turn: &Turn) -> Kernel {
+    let instant = Instant::new(model, mode, turn);
+    let weighted = match mode {
+        Mode::Stance(_) => {
+            "torques of the joints, then the balance (n), reaction (phi), and σ, σ̇, swing foot's height, platform's x, swing \
+             foot's vertical velocity, platform's height (others)"
+        }
+        Mode::Flight => {
+            "torques of the joints, then the balance (n), and σ, heights of the feet, platform's x, vertical velocities of the \
+             feet, platform's height, all from the mass centre (others)"
+        }
+    };
     let kernel = Kernel::new(
-        format!("curvature{}", leg + 1),
-        "Gradient in (q, q̇, q̈) and second derivatives of the sum of all outputs of an instant, each with its weight: \
-         torques of the joints, then the balance (n), reaction (phi), and σ, σ̇, swing foot's height, platform's x, swing foot's \
-         vertical velocity, platform's height (others).",
-    )
-    .input("q", model.q(0))
-    .input("qd", model.q(1))
-    .input("qdd", model.q(2))
-    .input("n", n)
-    .input("phi", phi)
-    .input("others", others);
-    second_derivatives(model, kernel, &sum)
+        mode.kernel("curvature"),
+        format!(
+            "Gradient in (q, q̇, q̈) and second derivatives of the sum of all outputs of an instant, each with its weight: {weighted}."
+        ),
+    );
+    let kernel = instant.inputs(model, kernel);
+    second_derivatives(model, kernel, &instant.sum)
 }
 
 /// Adds to a kernel the gradient in (q, q̇, q̈) and the second derivatives of a sum that is linear in q̈, with factors
@@ -123,76 +142,4 @@ pub fn second_derivatives(model: &Model, kernel: Kernel, sum: &Poly) -> Kernel {
         .matrix("q_qd", q_qd, "∂²/∂q∂q̇")
         .matrix("q_qdd", q_qdd, "∂²/∂q∂q̈")
         .matrix("qd_qd", qd_qd, "∂²/∂q̇∂q̇")
-}
-
-/// A touchdown's results, each with its weight, and the adjoint of its linear system.
-pub struct Landing {
-    /// Weights of q̇⁺.
-    pub xi: Vec<Var>,
-    /// Weights of the other results.
-    pub outputs: Vec<Var>,
-    /// Symbols of q̇⁺.
-    pub plus: Vec<Var>,
-    /// A sum whose partial derivatives, with q̇⁺ and the adjoint held, are total ones of the weighted results.
-    pub sum: Poly,
-    /// q̇⁺ and the adjoint, to be inserted after differentiation.
-    pub solution: BTreeMap<Var, Poly>,
-}
-
-impl Landing {
-    pub fn new(model: &mut Model, leg: usize) -> Landing {
-        let impact = super::impact::Touchdown::new(model, leg);
-        let q = model.q(0);
-        let xi = symbols(model, "xi", q.len());
-        let outputs = symbols(model, "w", impact.outputs.len());
-        let factors = Factors::new(&mut model.ring, &impact.inertia);
-        let solution = factors.solve(&mut model.ring, &impact.before);
-        let insert: BTreeMap<Var, Poly> = impact.plus.iter().copied().zip(solution).collect();
-
-        let mut direct = Poly::zero();
-        for (weight, output) in outputs.iter().zip(&impact.outputs) {
-            direct += &(&Poly::from(*weight) * output);
-        }
-        // Aq ζ = ξ + ∂(weighted outputs)/∂q̇⁺
-        let right: Vec<Poly> = xi
-            .iter()
-            .zip(&impact.plus)
-            .map(|(x, plus)| {
-                let through = model.ring.derivative(&direct, *plus);
-                &Poly::from(*x) + &model.ring.substitute(&through, &insert)
-            })
-            .collect();
-        let zeta = factors.solve(&mut model.ring, &right);
-        let adjoint = symbols(model, "zeta", q.len());
-        let solution = insert.into_iter().chain(adjoint.iter().copied().zip(zeta)).collect();
-        let mut sum = direct;
-        for (z, residual) in adjoint.iter().zip(&impact.residual) {
-            sum += &(&Poly::from(*z) * residual);
-        }
-        Landing { xi, outputs, plus: impact.plus, sum, solution }
-    }
-}
-
-/// Second derivatives of a touchdown's weighted results.
-fn touchdown(model: &mut Model, leg: usize) -> Kernel {
-    let (q, qd) = (model.q(0), model.q(1));
-    let Landing { xi, outputs, plus, sum, solution } = Landing::new(model, leg);
-    let by_q: Vec<Poly> = q.iter().map(|s| model.ring.derivative(&sum, *s)).collect();
-    let raw = [model.hessian(&by_q, &q), model.jacobian(&by_q, &qd), model.jacobian(&by_q, &plus)];
-    let mut insert = |rows: &Vec<Vec<Poly>>| -> Vec<Vec<Poly>> {
-        rows.iter().map(|row| row.iter().map(|p| model.ring.substitute(p, &solution)).collect()).collect()
-    };
-    let [qq, q_qd, q_plus] = raw.each_ref().map(&mut insert);
-    Kernel::new(
-        format!("touchdown_curvature{}", leg + 1),
-        "Second derivatives of a touchdown's results, weighted: q̇⁺ (xi), then impulse, leaving and landing velocity, \
-         couple and pitch if there are any (outputs). With J = ∂q̇⁺/∂(q, q̇⁻), the Hessian in (q, q̇⁻) is [q_q, q_qd; ·, 0] + [q_plus; 0] J + its transpose.",
-    )
-    .input("q", q)
-    .input("qd", qd)
-    .input("xi", xi)
-    .input("outputs", outputs)
-    .matrix("q_q", qq, "∂²/∂q∂q")
-    .matrix("q_qd", q_qd, "∂²/∂q∂q̇⁻")
-    .matrix("q_plus", q_plus, "∂²/∂q∂q̇⁺")
 }

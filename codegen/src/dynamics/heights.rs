@@ -1,4 +1,4 @@
-//! Heights over the ground of all that must stay above it but feet, from the foot in support.
+//! Heights of all that must stay above the ground but feet: over the foot in support, in flight over the mass centre.
 //!
 //! Of points that cannot be lower than others there is no need to know: those at the same height (what legs of a virtual leg
 //! have in common), and on one body, or beside each other on bodies that turn alike, those within the hull of the others as the
@@ -7,15 +7,15 @@
 use super::kernel::Kernel;
 use super::model::Model;
 use crate::expr::{Poly, Var, Vec3, add, rotate, zero};
-use crate::mechanism::{Point, points};
+use crate::mechanism::{Mode, Point, points};
 use crate::spec::Rotation;
 use std::f64::consts::{PI, TAU};
 
-/// Kernels for stance on `leg`.
-pub fn kernels(model: &mut Model, leg: usize) -> Vec<Kernel> {
+/// Kernels of a mode.
+pub fn kernels(model: &mut Model, mode: Mode) -> Vec<Kernel> {
     let q = model.q(0);
-    let foot = model.foot(leg);
-    let heights: Vec<Poly> = all(model).into_iter().filter(|h| h.counts).map(|h| &h.place[1] - &foot[1]).collect();
+    let origin = model.place(mode.into());
+    let heights: Vec<Poly> = all(model).into_iter().filter(|h| h.counts).map(|h| &h.place[1] - &origin[1]).collect();
     let weights: Vec<Var> = (0..heights.len()).map(|k| model.ring.symbol(format!("w{k}"))).collect();
     let mut sum = Poly::zero();
     for (weight, height) in weights.iter().zip(&heights) {
@@ -23,14 +23,17 @@ pub fn kernels(model: &mut Model, leg: usize) -> Vec<Kernel> {
     }
     let gradient: Vec<Poly> = q.iter().map(|s| model.ring.derivative(&sum, *s)).collect();
     let values = Kernel::new(
-        format!("heights{}", leg + 1),
-        "Heights over the ground of joints and corners, those that can be the lowest, with their Jacobian in q.",
+        mode.kernel("heights"),
+        mode.say(
+"Heights over the ground of joints and corners, those that can be the lowest, with their Jacobian in q.",
+"Heights over the mass centre of joints and corners, those that can be the lowest, with their Jacobian in q.",
+),
     )
     .input("q", q.clone())
     .vector("heights", heights.clone(), "m, in the order of the description's `lowest`")
     .matrix("jacobian", model.jacobian(&heights, &q), "∂heights/∂q");
     let curvature = Kernel::new(
-        format!("heights_curvature{}", leg + 1),
+        mode.kernel("heights_curvature"),
         "Gradient in q and second derivatives of the sum of these heights, each with its weight.",
     )
     .input("q", q.clone())

@@ -1,24 +1,24 @@
 //! The equations of motion of one gait as kernels: named groups of expressions to be evaluated together.
 //!
-//! `floating` holds the model in X = [p, q] (eq. 5), `stance` the one reduced to q by the stance foot
-//! (eq. 6, 10), `turn` its angular momentum (eq. 8, 9), `impact` the passive impacts (eq. 11, 12), `staging` what of
+//! `floating` holds the model in X = [p, q] (eq. 5), `mode` the one reduced to q by a stance foot or by free fall
+//! (eq. 6, 10), `turn` its angular momentum (eq. 8, 9), `transition` take-off, landing and the passive impacts (eq. 11, 12), `staging` what of
 //! eq. 8 and 9 can be evaluated before β is known, `heights` those of the body over the ground; `whole` is the real robot, which has no gait. All follow Kane's form `Σ m ∂v/∂Ẋ·a + ∂ω/∂Ẋ·(Iω̇ + ω×Iω)`.
 
 mod closed_forms;
 mod curvature;
 mod floating;
 mod heights;
-mod impact;
 mod kernel;
 mod kinematics;
 mod lumps;
+mod mode;
 mod model;
 mod quantities;
 mod sensitivity;
 mod sharing;
 mod solve;
 mod staging;
-mod stance;
+mod transition;
 mod turn;
 mod whole;
 
@@ -30,7 +30,7 @@ pub use model::Model;
 pub use quantities::{BodyQuantities, Quantities};
 pub use whole::whole_kernels;
 
-use crate::mechanism::{Family, Mechanism};
+use crate::mechanism::{Family, Mechanism, Mode};
 use crate::spec::Rotation;
 use lumps::Lumps;
 use turn::Turn;
@@ -44,18 +44,24 @@ pub fn kernels(mechanism: &Mechanism) -> (Model, Vec<Kernel>) {
 
 fn derive(model: &mut Model) -> Vec<Kernel> {
     let mut kernels = floating::kernels(model);
-    for leg in 0..2 {
-        let turn = Turn::new(model, leg);
-        kernels.extend(stance::kernels(model, leg, &turn));
-        kernels.extend(staging::kernels(model, leg, &turn));
-        kernels.extend(impact::kernels(model, leg));
-        kernels.extend(curvature::kernels(model, leg, &turn));
-        kernels.extend(heights::kernels(model, leg));
-        if model.mechanism.rotation == Rotation::Roll {
+    let transitions = model.mechanism.transitions();
+    for mode in model.mechanism.modes.clone() {
+        let turn = Turn::new(model, mode);
+        kernels.extend(mode::kernels(model, mode, &turn));
+        kernels.extend(staging::kernels(model, mode, &turn));
+        if let Mode::Stance(leg) = mode {
+            kernels.push(transition::impact(model, leg));
+        }
+        let into = transitions.iter().filter(|t| t.to == mode);
+        kernels.extend(into.clone().map(|t| transition::kernel(model, *t)));
+        kernels.push(curvature::kernel(model, mode, &turn));
+        kernels.extend(into.map(|t| transition::curvature(model, *t)));
+        kernels.extend(heights::kernels(model, mode));
+        if let (Mode::Stance(leg), Rotation::Roll) = (mode, model.mechanism.rotation) {
             kernels.extend(sharing::kernels(model, leg));
         }
     }
-    kernels.push(impact::both_feet(model));
+    kernels.push(transition::both_feet(model));
     kernels
 }
 
@@ -73,7 +79,13 @@ pub struct FamilyKernels {
 pub fn family_kernels(family: &Family) -> (Model, FamilyKernels) {
     let mut model = Model::of_family(family);
     let mut gait = derive(&mut model);
-    let weighted: Vec<_> = (0..2).flat_map(|leg| sensitivity::weighted(&mut model, leg)).collect();
+    let transitions = model.mechanism.transitions();
+    let mut weighted = Vec::new();
+    for mode in model.mechanism.modes.clone() {
+        weighted.extend(sensitivity::of_mode(&mut model, mode));
+        let into = transitions.iter().filter(|t| t.to == mode);
+        weighted.extend(into.filter_map(|t| sensitivity::of_transition(&mut model, *t)));
+    }
     let mut lumps = Lumps::default();
     for value in gait.iter_mut().flat_map(|k| &mut k.outputs).flat_map(|o| &mut o.values) {
         *value = lumps.rewrite(&mut model.ring, value);

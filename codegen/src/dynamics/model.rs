@@ -3,7 +3,7 @@
 use super::kinematics::{Coordinates, Kinematics};
 use super::quantities::Quantities;
 use crate::expr::{Poly, Ring, Var, Vec3, add, cross, dot, subtract, zero};
-use crate::mechanism::{Family, Mechanism};
+use crate::mechanism::{Family, Mechanism, Mode};
 use std::collections::BTreeMap;
 
 /// Symbols, kinematics and mechanism of one gait.
@@ -24,6 +24,17 @@ pub enum Origin {
     World,
     /// The foot of a leg, taken to be at rest: p drops out.
     Foot(usize),
+    /// The robot's own mass centre: p drops out. It falls, so that no weight is felt there.
+    MassCentre,
+}
+
+impl From<Mode> for Origin {
+    fn from(mode: Mode) -> Origin {
+        match mode {
+            Mode::Stance(leg) => Origin::Foot(leg),
+            Mode::Flight => Origin::MassCentre,
+        }
+    }
 }
 
 impl Model {
@@ -59,12 +70,39 @@ impl Model {
         self.kinematics.feet[leg].clone()
     }
 
-    /// Mass centres of all bodies from `origin`.
-    pub fn centres(&self, origin: Origin) -> Vec<Vec3> {
-        let shift = match origin {
+    /// The origin, relative to the platform's mass centre.
+    pub fn place(&mut self, origin: Origin) -> Vec3 {
+        match origin {
             Origin::World => self.platform().map(|x| -&x),
             Origin::Foot(leg) => self.foot(leg),
-        };
+            Origin::MassCentre => self.own_mass_centre(),
+        }
+    }
+
+    /// The robot's mass centre from the platform's.
+    fn own_mass_centre(&mut self) -> Vec3 {
+        let mut moment = zero();
+        for body in &self.kinematics.bodies {
+            for (sum, x) in moment.iter_mut().zip(&body.place.com) {
+                *sum += &(x * &body.mass);
+            }
+        }
+        let total = self.total_mass();
+        let over_total = self.ring.reciprocal(total);
+        moment.map(|m| &m * &over_total)
+    }
+
+    /// What counts as weight where places are measured from `origin`, m/s².
+    pub fn gravity(&self, origin: Origin) -> Poly {
+        match origin {
+            Origin::MassCentre => Poly::zero(),
+            _ => self.quantities.gravity.clone(),
+        }
+    }
+
+    /// Mass centres of all bodies from `origin`.
+    pub fn centres(&mut self, origin: Origin) -> Vec<Vec3> {
+        let shift = self.place(origin);
         self.kinematics.bodies.iter().map(|b| subtract(&b.place.com, &shift)).collect()
     }
 
@@ -73,9 +111,10 @@ impl Model {
     }
 
     /// First moment of mass about `origin`: total mass times the mass centre of the whole robot.
-    pub fn first_moment(&self, origin: Origin) -> Vec3 {
+    pub fn first_moment(&mut self, origin: Origin) -> Vec3 {
         let mut moment = zero();
-        for (body, centre) in self.kinematics.bodies.iter().zip(self.centres(origin)) {
+        let centres = self.centres(origin);
+        for (body, centre) in self.kinematics.bodies.iter().zip(centres) {
             for (sum, c) in moment.iter_mut().zip(&centre) {
                 *sum += &(c * &body.mass);
             }
@@ -111,11 +150,12 @@ impl Model {
     /// Generalized force `d/dt ∂T/∂Ẋk − ∂T/∂Xk + ∂V/∂Xk` for each of `coordinates`.
     pub fn generalized_forces(&mut self, origin: Origin, coordinates: &[[Var; 3]]) -> Vec<Poly> {
         let mut forces = vec![Poly::zero(); coordinates.len()];
+        let gravity = self.gravity(origin);
         let centres = self.centres(origin);
         for (b, centre) in centres.iter().enumerate() {
             let velocity = self.rate(centre);
             let mut acceleration = self.rate(&velocity);
-            acceleration[1] += &self.quantities.gravity;
+            acceleration[1] += &gravity;
             let spin = self.kinematics.bodies[b].place.spin.clone();
             let angular = scaled(&spin, &self.kinematics.bodies[b].inertia);
             let moment = add(&self.rate(&angular), &cross(&spin, &angular));
@@ -130,10 +170,11 @@ impl Model {
     /// rotors do not turn in their motors, so they do not count.
     pub fn level_turn(&mut self, origin: Origin) -> (Poly, Poly) {
         let (mut sigma, mut balance) = (Poly::zero(), Poly::zero());
+        let gravity = self.gravity(origin);
         for (b, centre) in self.centres(origin).iter().enumerate() {
             let velocity = self.rate(centre);
             let mut acceleration = self.rate(&velocity);
-            acceleration[1] += &self.quantities.gravity;
+            acceleration[1] += &gravity;
             let body = &self.kinematics.bodies[b];
             let spin = &body.place.spin[2] * &body.inertia[2][2];
             sigma += &(&cross(centre, &velocity)[2] * &body.mass);

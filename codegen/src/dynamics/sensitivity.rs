@@ -3,12 +3,14 @@
 //! As in `curvature`, all that an instant or a touchdown gives enters one sum with a weight for each, so
 //! that one gradient serves every multiplier, and unit weights give the partial derivatives themselves.
 
-use super::curvature::{Instant, Landing};
+use super::curvature::Instant;
 use super::kernel::Kernel;
 use super::lumps::Lumps;
 use super::model::Model;
+use super::transition::WeightedImpact;
 use super::turn::Turn;
 use crate::expr::{Poly, Var};
+use crate::mechanism::{Mode, Transition};
 use std::collections::BTreeMap;
 
 /// A weighted sum of which a kernel will give the gradient.
@@ -19,10 +21,10 @@ pub struct Weighted {
     held: BTreeMap<Var, Poly>,
 }
 
-/// The weighted sums of stance on `leg`, and of the impact on `leg`.
-pub fn weighted(model: &mut Model, leg: usize) -> Vec<Weighted> {
-    let turn = Turn::new(model, leg);
-    vec![instant(model, leg, &turn), terms(model, leg, &turn), touchdown(model, leg)]
+/// The weighted sums of a mode.
+pub fn of_mode(model: &mut Model, mode: Mode) -> [Weighted; 2] {
+    let turn = Turn::new(model, mode);
+    [instant(model, mode, &turn), terms(model, mode, &turn)]
 }
 
 impl Weighted {
@@ -47,23 +49,17 @@ impl Weighted {
     }
 }
 
-fn instant(model: &mut Model, leg: usize, turn: &Turn) -> Weighted {
-    let Instant { n, phi, others, sum } = Instant::new(model, leg, turn);
+fn instant(model: &mut Model, mode: Mode, turn: &Turn) -> Weighted {
+    let instant = Instant::new(model, mode, turn);
     let kernel = Kernel::new(
-        format!("sensitivity{}", leg + 1),
+        mode.kernel("sensitivity"),
         "Gradient in the lumped parameters of the sum of all outputs of an instant, with the weights of the curvature's kernel.",
-    )
-    .input("q", model.q(0))
-    .input("qd", model.q(1))
-    .input("qdd", model.q(2))
-    .input("n", n)
-    .input("phi", phi)
-    .input("others", others);
-    Weighted { kernel, sum, held: BTreeMap::new() }
+    );
+    Weighted { kernel: instant.inputs(model, kernel), sum: instant.sum, held: BTreeMap::new() }
 }
 
 /// f1, f2 and c one by one.
-fn terms(model: &mut Model, leg: usize, turn: &Turn) -> Weighted {
+fn terms(model: &mut Model, mode: Mode, turn: &Turn) -> Weighted {
     let mut sum = Poly::zero();
     let weights: Vec<Var> = [&turn.f1, &turn.f2, &turn.c]
         .into_iter()
@@ -75,7 +71,7 @@ fn terms(model: &mut Model, leg: usize, turn: &Turn) -> Weighted {
         })
         .collect();
     let kernel = Kernel::new(
-        format!("terms_sensitivity{}", leg + 1),
+        mode.kernel("terms_sensitivity"),
         "Gradient in the lumped parameters of the weighted sum of f1, f2 (eq. 8) and the lever arm c (eq. 9).",
     )
     .input("q", model.q(0))
@@ -84,15 +80,17 @@ fn terms(model: &mut Model, leg: usize, turn: &Turn) -> Weighted {
     Weighted { kernel, sum, held: BTreeMap::new() }
 }
 
-fn touchdown(model: &mut Model, leg: usize) -> Weighted {
-    let Landing { xi, outputs, sum, solution, .. } = Landing::new(model, leg);
+/// The weighted sum of the impact in which a foot lands, if one does.
+pub fn of_transition(model: &mut Model, transition: Transition) -> Option<Weighted> {
+    let leg = transition.lands()?;
+    let WeightedImpact { velocities, xi, outputs, sum, solution, .. } = WeightedImpact::new(model, transition, leg);
     let kernel = Kernel::new(
-        format!("touchdown_sensitivity{}", leg + 1),
-        "Gradient in the lumped parameters of a touchdown's results, with the weights of the touchdown curvature's kernel.",
+        transition.kernel("_sensitivity"),
+        "Gradient in the lumped parameters of an impact's results, with the weights of its curvature's kernel.",
     )
     .input("q", model.q(0))
-    .input("qd", model.q(1))
+    .input(velocities.name, velocities.symbols)
     .input("xi", xi)
     .input("outputs", outputs);
-    Weighted { kernel, sum, held: solution }
+    Some(Weighted { kernel, sum, held: solution })
 }

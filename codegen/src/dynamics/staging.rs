@@ -2,13 +2,14 @@
 //!
 //! f1, f2 and σ̇ (eq. 8, 9) are split into what depends on (Q, Q̇) alone, evaluated once per instant,
 //! and a remainder in sin β, cos β. Where the robot turns as a whole with β, f1 and f2 do not contain
-//! it at all, and σ̇ = a cos β + b sin β: a pendulum. The split finds this by itself, because angles
+//! it at all, and σ̇ = a cos β + b sin β: a pendulum; in flight σ̇ = 0, and β is an integral. The split finds this by itself, because angles
 //! are split at β and the ring's law cancels what is common.
 
 use super::kernel::Kernel;
 use super::model::Model;
 use super::turn::Turn;
 use crate::expr::{Poly, Var};
+use crate::mechanism::Mode;
 
 /// Collects early expressions and hands out a symbol for each.
 struct Early {
@@ -49,7 +50,7 @@ impl Early {
     }
 }
 
-pub fn kernels(model: &mut Model, leg: usize, turn: &Turn) -> Vec<Kernel> {
+pub fn kernels(model: &mut Model, mode: Mode, turn: &Turn) -> Vec<Kernel> {
     let beta = model.unactuated(0);
     let (prescribed, rates) = (model.prescribed(0), model.prescribed(1));
     let mut early = Early { symbols: Vec::new(), values: Vec::new() };
@@ -68,7 +69,7 @@ pub fn kernels(model: &mut Model, leg: usize, turn: &Turn) -> Vec<Kernel> {
     let f2_q = gradient(&turn.f2, &prescribed);
     let f2_qd = gradient(&turn.f2, &rates);
     let moment_q = gradient(&turn.gravity_moment, &prescribed);
-    let name = |what: &str| format!("{what}{}", leg + 1);
+    let name = |what: &str| mode.kernel(what);
     vec![
         Kernel::new(
             name("early"),

@@ -1,26 +1,27 @@
-//! The whole robot turning about its stance foot: angular momentum (eq. 8), its rate (eq. 9) and the balance (eq. 10).
+//! The whole robot turning about its stance foot, in flight about its mass centre: angular momentum (eq. 8), its rate (eq. 9) and the balance (eq. 10).
 
 use super::model::{Model, Origin};
 use crate::expr::{Poly, Var};
+use crate::mechanism::Mode;
 use crate::spec::Rotation;
 
-/// Momentum and moments about the stance foot, as expressions.
+/// Momentum and moments about the stance foot or the mass centre, as expressions.
 pub struct Turn {
     /// σ = f1 β̇ + f2 (eq. 8).
     pub sigma: Poly,
     pub f1: Poly,
     pub f2: Poly,
-    /// Moment of gravity about the stance foot: σ̇ (eq. 9).
+    /// Moment of gravity: σ̇ (eq. 9). In flight there is none.
     pub gravity_moment: Poly,
-    /// Lever arm c (eq. 9).
+    /// Its lever arm c (eq. 9).
     pub c: Poly,
-    /// Moment balance of the whole robot about the stance foot: zero in every motion (eq. 10).
+    /// Moment balance of the whole robot: zero in every motion (eq. 10).
     pub balance: Poly,
 }
 
 impl Turn {
-    pub fn new(model: &mut Model, leg: usize) -> Turn {
-        let origin = Origin::Foot(leg);
+    pub fn new(model: &mut Model, mode: Mode) -> Turn {
+        let origin = Origin::from(mode);
         // The platform's rotation where it has one.
         let (sigma, balance) = match model.mechanism.rotation {
             Rotation::None => model.level_turn(origin),
@@ -34,8 +35,13 @@ impl Turn {
         let f2 = model.without(&sigma, &[beta_rate]);
         let still: Vec<Var> = [model.q(1), model.q(2)].concat();
         let gravity_moment = -&model.without(&balance, &still);
-        let com = model.centre_of_mass(origin);
-        let c = if model.mechanism.rotation == Rotation::Roll { com[2].clone() } else { com[0].clone() };
+        let c = match mode {
+            Mode::Stance(_) => {
+                let com = model.centre_of_mass(origin);
+                com[if model.mechanism.rotation == Rotation::Roll { 2 } else { 0 }].clone()
+            }
+            Mode::Flight => Poly::zero(),
+        };
         Turn { sigma, f1, f2, gravity_moment, c, balance }
     }
 }

@@ -1,19 +1,24 @@
-//! From the specification to a mechanism: the real robot (`robot`) as a gait moves it (`embedding`), with numbers.
+//! From the specification to a mechanism: the real robot (`robot`) as a gait moves it (`embedding`), with numbers; what of it
+//! stands on the ground (`mode`), and how that changes (`transition`).
 
 mod embedding;
 mod family;
 mod lever;
+mod mode;
 mod names;
 mod parameter;
 mod points;
 mod robot;
+mod transition;
 
 pub use embedding::{Member, VirtualLeg};
 pub use family::Family;
 pub use lever::{Lever, levers};
+pub use mode::Mode;
 pub use parameter::{Parameter, Sign, parameters, select, with};
 pub use points::{Point, Spot, points};
 pub use robot::{Body, Whole, WholeJoint, WholeLeg};
+pub use transition::Transition;
 
 use crate::spec::{Gait, HalfSteps, Joint, Limits, Robot, Rotation, Unactuated};
 
@@ -36,6 +41,8 @@ pub struct Mechanism {
     pub legs: [VirtualLeg; 2],
     /// Index of β in q = [joints, θ].
     pub unactuated: usize,
+    /// In which situations it moves.
+    pub modes: Vec<Mode>,
     pub half_steps: HalfSteps,
     pub polynomial_order: usize,
     pub limits: Limits,
@@ -75,6 +82,7 @@ impl Mechanism {
             joints,
             legs,
             unactuated,
+            modes: vec![Mode::Stance(0), Mode::Stance(1)],
             half_steps: gait.half_steps,
             polynomial_order: gait.polynomial_order,
             limits: gait.limits.clone(),

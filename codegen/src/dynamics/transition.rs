@@ -1,0 +1,448 @@
+//! Transitions between modes. A foot lands in a passive impact (eq. 12), while the other one leaves or out of flight; a foot that
+//! leaves into flight changes nothing at that instant. Beside them eq. 11, with both feet at rest.
+//!
+//! A landing foot j that comes to rest takes an impulse that does no work in motions with foot j at
+//! rest. In those, the generalized momenta before and after are equal: `Aq⁽ʲ⁾ q̇⁺ = P⁽ʲ⁾(Ẋ⁻)`.
+
+use super::curvature::symbols;
+use super::kernel::Kernel;
+use super::model::{Model, Origin, scaled};
+use super::sharing;
+use super::solve::Factors;
+use crate::expr::{Poly, Var, Vec3, subtract, zero};
+use crate::mechanism::Transition;
+use crate::spec::Rotation;
+use std::collections::BTreeMap;
+
+/// Momenta conjugate to motions about foot `landing`, of velocities with the platform at `pd`.
+fn momenta_before(model: &mut Model, landing: usize, platform_velocity: &Vec3) -> Vec<Poly> {
+    let q = model.coordinates.q.clone();
+    let about: Vec<Vec3> = model.centres(Origin::Foot(landing));
+    let mut momenta = vec![Poly::zero(); q.len()];
+    for (b, centre) in about.iter().enumerate() {
+        let relative = model.kinematics.bodies[b].place.com.clone();
+        let mut velocity = model.rate(&relative);
+        for (v, p) in velocity.iter_mut().zip(platform_velocity) {
+            *v += p;
+        }
+        let spin = model.kinematics.bodies[b].place.spin.clone();
+        let body = model.kinematics.bodies[b].clone();
+        let angular = scaled(&spin, &body.inertia);
+        for (sum, [x, xd, _]) in momenta.iter_mut().zip(&q) {
+            for i in 0..3 {
+                *sum += &(&(&model.ring.derivative(&centre[i], *x) * &velocity[i]) * &body.mass);
+                *sum += &(&model.ring.derivative(&spin[i], *xd) * &angular[i]);
+            }
+        }
+    }
+    for (k, inertia) in model.quantities.rotor_inertia.iter().enumerate() {
+        momenta[k] += &(&Poly::from(q[k][1]) * inertia);
+    }
+    momenta
+}
+
+fn platform_rate(model: &Model) -> Vec3 {
+    let mut v = [Poly::zero(), Poly::zero(), Poly::zero()];
+    for (slot, symbol) in v.iter_mut().zip(&model.coordinates.p) {
+        *slot = symbol[1].into();
+    }
+    v
+}
+
+/// Inertia of motions about foot `leg`.
+fn inertia_about(model: &mut Model, leg: usize) -> Vec<Vec<Poly>> {
+    let q = model.coordinates.q.clone();
+    let momenta = model.momenta(Origin::Foot(leg), &q);
+    let rates = model.q(1);
+    model.jacobian(&momenta, &rates)
+}
+
+/// Impulse on the feet in all: the change of linear momentum.
+fn impulse(model: &mut Model, landing: usize, before: &Vec3, after: &BTreeMap<Var, Poly>) -> Vec<Poly> {
+    let moment = model.first_moment(Origin::Foot(landing));
+    let rate = model.rate(&moment);
+    let after: Vec<Poly> = model.components(&rate).iter().map(|v| model.ring.substitute(v, after)).collect();
+    after.iter().zip(before).map(|(a, b)| a - b).collect()
+}
+
+/// Linear momentum of the robot when the platform moves at `platform`.
+fn linear_momentum(model: &mut Model, platform: &Vec3) -> Vec3 {
+    let mass = model.total_mass();
+    let shift = model.platform().map(|x| &x * &mass);
+    let relative = subtract(&model.first_moment(Origin::World), &shift);
+    let rate = model.rate(&relative);
+    [0, 1, 2].map(|i| &rate[i] + &(&platform[i] * &mass))
+}
+
+fn with_platform(model: &mut Model, landing: usize, solution: &[Poly]) -> (BTreeMap<Var, Poly>, Vec<Poly>) {
+    let map: BTreeMap<Var, Poly> = model.q(1).into_iter().zip(solution.iter().cloned()).collect();
+    let p = model.foot(landing).map(|x| -&x);
+    let rate = model.rate(&p);
+    let mut xd: Vec<Poly> = model.components(&rate).iter().map(|v| model.ring.substitute(v, &map)).collect();
+    xd.extend(solution.iter().cloned());
+    (map, xd)
+}
+
+/// What a transition does, with its Jacobian.
+pub fn kernel(model: &mut Model, transition: Transition) -> Kernel {
+    match transition.lands() {
+        Some(leg) => landing(model, transition, leg),
+        None => TakeOff::new(model, transition).kernel(model, transition),
+    }
+}
+
+/// Second derivatives of what it does, each with its weight.
+pub fn curvature(model: &mut Model, transition: Transition) -> Kernel {
+    match transition.lands() {
+        Some(leg) => landing_curvature(model, transition, leg),
+        None => TakeOff::new(model, transition).curvature(model, transition),
+    }
+}
+
+/// The impact on foot `leg` whatever moved before.
+pub fn impact(model: &mut Model, leg: usize) -> Kernel {
+    let platform = platform_rate(model);
+    let momenta = momenta_before(model, leg, &platform);
+    let inertia = inertia_about(model, leg);
+    let factors = Factors::new(&mut model.ring, &inertia);
+    let solution = factors.solve(&mut model.ring, &momenta);
+    let (map, xd) = with_platform(model, leg, &solution);
+    let before = linear_momentum(model, &platform);
+    let impulse = impulse(model, leg, &before, &map);
+    Kernel::new(
+        format!("impact{}", leg + 1),
+        "Passive impact on this foot, the other one free (eq. 12): velocities after, and the impulse.",
+    )
+    .input("q", model.q(0))
+    .input("xd", model.x(1))
+    .vector("xd_plus", xd, "Ẋ⁺")
+    .vector("impulse", impulse, "impulse on this foot, N·s")
+}
+
+/// The impact on one foot at the end of a mode, with the velocities after as symbols, so that what depends on them can be
+/// differentiated by parts.
+pub struct Impact {
+    /// Velocities before that are given: q̇⁻ after single support, which knows ṗ⁻ from it, else Ẋ⁻.
+    pub velocities: Velocities,
+    /// Aq about the landing foot.
+    pub inertia: Vec<Vec<Poly>>,
+    /// Momenta before.
+    pub before: Vec<Poly>,
+    /// Symbols of q̇⁺.
+    pub plus: Vec<Var>,
+    /// Momenta before minus after: zero.
+    pub residual: Vec<Poly>,
+    /// Impulse, vertical velocity after of the foot that leaves, if one does, of the landing foot before; where the platform rolls
+    /// also how real feet share (see `sharing::landing`).
+    pub outputs: Vec<Poly>,
+}
+
+/// Rates under the name of their input.
+pub struct Velocities {
+    pub name: &'static str,
+    pub symbols: Vec<Var>,
+}
+
+impl Impact {
+    pub fn new(model: &mut Model, transition: Transition, leg: usize) -> Impact {
+        let qd = model.q(1);
+        let (velocities, platform) = match transition.leaves() {
+            Some(stance) => {
+                let p = model.foot(stance).map(|x| -&x);
+                (Velocities { name: "qd", symbols: qd.clone() }, model.rate(&p))
+            }
+            None => (Velocities { name: "xd", symbols: model.x(1) }, platform_rate(model)),
+        };
+        let before = momenta_before(model, leg, &platform);
+        let inertia = inertia_about(model, leg);
+        let plus = symbols(model, "plus", qd.len());
+        let rename: BTreeMap<Var, Poly> = qd.iter().copied().zip(plus.iter().map(|v| Poly::from(*v))).collect();
+        let coordinates = model.coordinates.q.clone();
+        let momenta = model.momenta(Origin::Foot(leg), &coordinates);
+        let after: Vec<Poly> = momenta.iter().map(|m| model.ring.substitute(m, &rename)).collect();
+        let residual = before.iter().zip(&after).map(|(b, a)| b - a).collect();
+        let momentum_before = linear_momentum(model, &platform);
+        let mut outputs = impulse(model, leg, &momentum_before, &rename);
+        if let Some(stance) = transition.leaves() {
+            let leaving = subtract(&model.foot(stance), &model.foot(leg));
+            let leaving_rate = model.rate(&leaving);
+            outputs.push(model.ring.substitute(&leaving_rate[1], &rename));
+        }
+        let place = model.foot(leg);
+        let landing = match transition.leaves() {
+            Some(stance) => model.rate(&subtract(&place, &model.foot(stance)))[1].clone(),
+            None => &platform[1] + &model.rate(&place)[1],
+        };
+        outputs.push(landing);
+        if model.mechanism.rotation == Rotation::Roll {
+            outputs.extend(sharing::landing(model, leg, &platform, &rename));
+        }
+        Impact { velocities, inertia, before, plus, residual, outputs }
+    }
+}
+
+/// The impact at the end of a mode, with its Jacobian in q and the velocities before.
+fn landing(model: &mut Model, transition: Transition, leg: usize) -> Kernel {
+    let q = model.q(0);
+    let Impact { velocities, inertia, before, plus, residual, outputs } = Impact::new(model, transition, leg);
+    let by: Vec<Var> = q.iter().chain(&velocities.symbols).copied().collect();
+    let factors = Factors::new(&mut model.ring, &inertia);
+    let solution = factors.solve(&mut model.ring, &before);
+    let insert: BTreeMap<Var, Poly> = plus.iter().copied().zip(solution.iter().cloned()).collect();
+    let partial = model.jacobian(&residual, &by);
+    // Aq ∂q̇⁺/∂w = ∂(P⁻ − Aq q̇⁺)/∂w with q̇⁺ held.
+    let mut columns: Vec<Vec<Poly>> = Vec::new();
+    for w in 0..by.len() {
+        let right: Vec<Poly> = partial.iter().map(|row| model.ring.substitute(&row[w], &insert)).collect();
+        columns.push(factors.solve(&mut model.ring, &right));
+    }
+
+    let direct = model.jacobian(&outputs, &by);
+    let through = model.jacobian(&outputs, &plus);
+    let mut jacobian: Vec<Vec<Poly>> =
+        (0..q.len()).map(|k| columns.iter().map(|column| column[k].clone()).collect()).collect();
+    for (direct, through) in direct.iter().zip(&through) {
+        let row = (0..by.len())
+            .map(|w| {
+                let mut total = model.ring.substitute(&direct[w], &insert);
+                for (k, partial) in through.iter().enumerate() {
+                    let partial = model.ring.substitute(partial, &insert);
+                    total += &(&partial * &columns[w][k]);
+                }
+                total
+            })
+            .collect();
+        jacobian.push(row);
+    }
+    let mut values: Vec<Poly> = outputs.iter().map(|p| model.ring.substitute(p, &insert)).collect();
+    let leaves = transition.leaves().is_some();
+    let mut couple = values.split_off(model.mechanism.positions() + 1 + usize::from(leaves));
+    let couple_rows = jacobian.split_off(jacobian.len() - couple.len());
+    let landing_velocity = values.pop().unwrap_or_default();
+    let leaving_velocity = if leaves { values.pop() } else { None };
+    let (doc, rows) = if leaves {
+        (
+            "Impact on this foot at the end of single support on the other (eq. 12), with its Jacobian in (q, q̇⁻): \
+         rows are q̇⁺, the impulse, the leaving foot's vertical velocity after, the landing foot's before.",
+            "∂(q̇⁺, impulse, leaving, landing)/∂(q, q̇⁻)",
+        )
+    } else {
+        (
+            "Impact on this foot at the end of a flight (eq. 12), with its Jacobian in (q, ṗ⁻, q̇⁻): rows are q̇⁺, the impulse, \
+         the landing foot's vertical velocity before.",
+            "∂(q̇⁺, impulse, landing)/∂(q, Ẋ⁻)",
+        )
+    };
+    let mut kernel = Kernel::new(transition.kernel(""), doc)
+        .input("q", q)
+        .input(velocities.name, velocities.symbols)
+        .vector("qd_plus", solution, "q̇⁺, before the legs swap names")
+        .vector("impulse", values, "impulse on the landing foot, N·s");
+    if let Some(leaving) = leaving_velocity {
+        kernel = kernel.scalar("leaving", leaving, "vertical velocity of the leaving foot after, m/s");
+    }
+    kernel = kernel
+        .scalar("landing", landing_velocity, "vertical velocity of the landing foot before, m/s")
+        .matrix("jacobian", jacobian, rows);
+    let Some(pitch) = couple.pop() else { return kernel };
+    kernel
+        .vector(
+            "couple",
+            couple,
+            "half the difference of the real feet's impulses times their distance, y and z, N·m·s",
+        )
+        .scalar("pitch", pitch, "change of the angular momentum about the platform's transverse axis, N·m·s")
+        .matrix("couple_jacobian", couple_rows, "∂(couple, pitch)/∂(q, q̇⁻)")
+}
+
+/// An impact's results, each with its weight, and the adjoint of its linear system.
+pub struct WeightedImpact {
+    pub velocities: Velocities,
+    /// Weights of q̇⁺.
+    pub xi: Vec<Var>,
+    /// Weights of the other results.
+    pub outputs: Vec<Var>,
+    /// Symbols of q̇⁺.
+    pub plus: Vec<Var>,
+    /// A sum whose partial derivatives, with q̇⁺ and the adjoint held, are total ones of the weighted results.
+    pub sum: Poly,
+    /// q̇⁺ and the adjoint, to be inserted after differentiation.
+    pub solution: BTreeMap<Var, Poly>,
+}
+
+impl WeightedImpact {
+    pub fn new(model: &mut Model, transition: Transition, leg: usize) -> WeightedImpact {
+        let impact = Impact::new(model, transition, leg);
+        let q = model.q(0);
+        let xi = symbols(model, "xi", q.len());
+        let outputs = symbols(model, "w", impact.outputs.len());
+        let factors = Factors::new(&mut model.ring, &impact.inertia);
+        let solution = factors.solve(&mut model.ring, &impact.before);
+        let insert: BTreeMap<Var, Poly> = impact.plus.iter().copied().zip(solution).collect();
+
+        let mut direct = Poly::zero();
+        for (weight, output) in outputs.iter().zip(&impact.outputs) {
+            direct += &(&Poly::from(*weight) * output);
+        }
+        // Aq ζ = ξ + ∂(weighted outputs)/∂q̇⁺
+        let right: Vec<Poly> = xi
+            .iter()
+            .zip(&impact.plus)
+            .map(|(x, plus)| {
+                let through = model.ring.derivative(&direct, *plus);
+                &Poly::from(*x) + &model.ring.substitute(&through, &insert)
+            })
+            .collect();
+        let zeta = factors.solve(&mut model.ring, &right);
+        let adjoint = symbols(model, "zeta", q.len());
+        let solution = insert.into_iter().chain(adjoint.iter().copied().zip(zeta)).collect();
+        let mut sum = direct;
+        for (z, residual) in adjoint.iter().zip(&impact.residual) {
+            sum += &(&Poly::from(*z) * residual);
+        }
+        WeightedImpact { velocities: impact.velocities, xi, outputs, plus: impact.plus, sum, solution }
+    }
+}
+
+/// Second derivatives of an impact's weighted results.
+fn landing_curvature(model: &mut Model, transition: Transition, leg: usize) -> Kernel {
+    let q = model.q(0);
+    let WeightedImpact { velocities, xi, outputs, plus, sum, solution } = WeightedImpact::new(model, transition, leg);
+    let by_q: Vec<Poly> = q.iter().map(|s| model.ring.derivative(&sum, *s)).collect();
+    let raw = [model.hessian(&by_q, &q), model.jacobian(&by_q, &velocities.symbols), model.jacobian(&by_q, &plus)];
+    let mut insert = |rows: &Vec<Vec<Poly>>| -> Vec<Vec<Poly>> {
+        rows.iter().map(|row| row.iter().map(|p| model.ring.substitute(p, &solution)).collect()).collect()
+    };
+    let [qq, q_before, q_plus] = raw.each_ref().map(&mut insert);
+    let (doc, block, what) = match transition.leaves() {
+        Some(_) => (
+            "Second derivatives of a touchdown's results, weighted: q̇⁺ (xi), then impulse, leaving and landing velocity, \
+             couple and pitch if there are any (outputs). With J = ∂q̇⁺/∂(q, q̇⁻), the Hessian in (q, q̇⁻) is \
+             [q_q, q_qd; ·, 0] + [q_plus; 0] J + its transpose.",
+            "q_qd",
+            "∂²/∂q∂q̇⁻",
+        ),
+        None => (
+            "Second derivatives of a landing's results, weighted: q̇⁺ (xi), then impulse and landing velocity (outputs). With \
+             J = ∂q̇⁺/∂(q, Ẋ⁻), the Hessian in (q, Ẋ⁻) is [q_q, q_xd; ·, 0] + [q_plus; 0] J + its transpose.",
+            "q_xd",
+            "∂²/∂q∂Ẋ⁻",
+        ),
+    };
+    Kernel::new(transition.kernel("_curvature"), doc)
+        .input("q", q)
+        .input(velocities.name, velocities.symbols)
+        .input("xi", xi)
+        .input("outputs", outputs)
+        .matrix("q_q", qq, "∂²/∂q∂q")
+        .matrix(block, q_before, what)
+        .matrix("q_plus", q_plus, "∂²/∂q∂q̇⁺")
+}
+
+/// The mass centre from the foot that leaves, and its velocity: where its parabola begins.
+struct TakeOff {
+    place: Vec<Poly>,
+    velocity: Vec<Poly>,
+}
+
+impl TakeOff {
+    fn new(model: &mut Model, transition: Transition) -> TakeOff {
+        let centre = model.place(Origin::MassCentre);
+        let foot = transition.leaves().map_or(zero(), |leg| model.foot(leg));
+        let place = subtract(&centre, &foot);
+        let velocity = model.rate(&place);
+        TakeOff { place: model.components(&place), velocity: model.components(&velocity) }
+    }
+
+    fn kernel(self, model: &Model, transition: Transition) -> Kernel {
+        let (q, qd) = (model.q(0), model.q(1));
+        let by: Vec<Var> = q.iter().chain(&qd).copied().collect();
+        let jacobians = (model.jacobian(&self.place, &q), model.jacobian(&self.velocity, &by));
+        Kernel::new(
+            transition.kernel(""),
+            "Mass centre and its velocity when this foot, at rest so far, leaves the ground: where its parabola begins. From the foot, \
+             with Jacobians.",
+        )
+        .input("q", q)
+        .input("qd", qd)
+        .vector("r", self.place, "mass centre, m")
+        .vector("v", self.velocity, "its velocity, m/s")
+        .matrix("r_q", jacobians.0, "∂r/∂q")
+        .matrix("v_w", jacobians.1, "∂v/∂(q, q̇)")
+    }
+
+    fn curvature(self, model: &mut Model, transition: Transition) -> Kernel {
+        let (q, qd) = (model.q(0), model.q(1));
+        let weights = symbols(model, "w", self.place.len() + self.velocity.len());
+        let mut sum = Poly::zero();
+        for (weight, term) in weights.iter().zip(self.place.iter().chain(&self.velocity)) {
+            sum += &(&Poly::from(*weight) * term);
+        }
+        let by_q: Vec<Poly> = q.iter().map(|s| model.ring.derivative(&sum, *s)).collect();
+        let (q_q, q_qd) = (model.hessian(&by_q, &q), model.jacobian(&by_q, &qd));
+        Kernel::new(
+            transition.kernel("_curvature"),
+            "Second derivatives of a take-off's results, weighted: r, then v. In q̇ twice there are none.",
+        )
+        .input("q", q)
+        .input("qd", qd)
+        .input("weights", weights)
+        .matrix("q_q", q_q, "∂²/∂q∂q")
+        .matrix("q_qd", q_qd, "∂²/∂q∂q̇")
+    }
+}
+
+/// Both feet at rest after the impact (eq. 11). Singular where the feet cannot both be loaded
+/// independently: the pivots say so.
+pub fn both_feet(model: &mut Model) -> Kernel {
+    let (landing, other) = (1, 0);
+    let platform = platform_rate(model);
+    let momenta = momenta_before(model, landing, &platform);
+    let inertia = inertia_about(model, landing);
+    let factors = Factors::new(&mut model.ring, &inertia);
+    let free = factors.solve(&mut model.ring, &momenta);
+    let apart = subtract(&model.foot(other), &model.foot(landing));
+    let apart = model.components(&apart);
+    let jacobian = model.jacobian(&apart, &model.q(0));
+    let responses: Vec<Vec<Poly>> = jacobian.iter().map(|row| factors.solve(&mut model.ring, row)).collect();
+    let product = |row: &[Poly], x: &[Poly]| {
+        let mut sum = Poly::zero();
+        for (a, b) in row.iter().zip(x) {
+            sum += &(a * b);
+        }
+        sum
+    };
+    let schur: Vec<Vec<Poly>> =
+        jacobian.iter().map(|row| responses.iter().map(|x| model.ring.bind(product(row, x))).collect()).collect();
+    let right: Vec<Poly> = jacobian.iter().map(|row| -&product(row, &free)).collect();
+    let schur_factors = Factors::new(&mut model.ring, &schur);
+    let impulse_other = schur_factors.solve(&mut model.ring, &right);
+    let solution: Vec<Poly> = free
+        .iter()
+        .enumerate()
+        .map(|(k, u)| {
+            let mut sum = u.clone();
+            for (response, i) in responses.iter().zip(&impulse_other) {
+                sum += &(&response[k] * i);
+            }
+            model.ring.bind(sum)
+        })
+        .collect();
+    let (map, xd) = with_platform(model, landing, &solution);
+    let before = linear_momentum(model, &platform);
+    let total = impulse(model, landing, &before, &map);
+    let impulse_landing = total.iter().zip(&impulse_other).map(|(t, o)| t - o).collect();
+    let scale = (0..schur.len()).map(|k| schur[k][k].clone()).collect();
+    Kernel::new("impact_both", "Passive impact with both feet at rest after (eq. 11).")
+        .input("q", model.q(0))
+        .input("xd", model.x(1))
+        .vector("xd_plus", xd, "Ẋ⁺")
+        .vector("impulse1", impulse_other, "impulse on foot 1, N·s")
+        .vector("impulse2", impulse_landing, "impulse on foot 2, N·s")
+        .vector(
+            "pivots",
+            schur_factors.pivots,
+            "pivots of the feet's mutual compliance: one that is tiny beside `scale` means a singular case",
+        )
+        .vector("scale", scale, "the compliance's diagonal")
+}
