@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{Derived, FAMILIES, GAITS, files, shipped, specification};
+use common::{Derived, FAMILIES, GAITS, files, in_all_modes, specification};
 use piaffe_codegen::dynamics::{Input, whole_kernels};
 use piaffe_codegen::mechanism::Whole;
 use piaffe_codegen::program::Program;
@@ -309,7 +309,7 @@ fn sine_and_cosine_do_not_branch() {
 /// Factoring does not change values: the program as it is emitted against the expressions as derived.
 #[test]
 fn programs_compute_what_was_derived() {
-    let robot = GAITS.map(|gait| (gait, Derived::new(&shipped(gait))));
+    let robot = GAITS.map(|gait| (gait, Derived::new(&in_all_modes(gait))));
     let family = FAMILIES.map(|gait| (gait, Derived::of_family(gait)));
     for (gait, d) in robot.into_iter().chain(family) {
         let mut number = 0u32;
@@ -344,7 +344,7 @@ fn programs_compute_what_was_derived() {
 fn operation_counts_are_pinned() {
     let mut table = String::from("# gait kernel: additions and multiplications, divisions, pairs of sine and cosine\n");
     for gait in GAITS.into_iter().filter(|gait| !gait.contains('/')) {
-        let d = Derived::new(&shipped(gait));
+        let d = Derived::new(&in_all_modes(gait));
         for kernel in &d.kernels {
             let o = Program::new(&d.model.ring, kernel).operations();
             writeln!(table, "{gait} {}: {} {} {}", kernel.name, o.flops, o.divisions, o.sincos).unwrap();

@@ -34,6 +34,12 @@ pub fn shipped(gait: &str) -> Mechanism {
     Mechanism::new(&robot.locked(&gait.locked).unwrap(), &gait)
 }
 
+/// The same with all modes in which it can move.
+pub fn in_all_modes(gait: &str) -> Mechanism {
+    let mechanism = shipped(gait);
+    mechanism.clone().with_flight().unwrap_or(mechanism)
+}
+
 /// The robot and the gait of a shipped gait.
 pub fn specification(gait: &str) -> (Robot, Gait) {
     let (_, robot, gait) = files(gait);
@@ -58,12 +64,14 @@ impl Derived {
         Derived { model, kernels, of_robot: Vec::new() }
     }
 
-    /// A shipped gait with all numbers of the robot as parameters.
+    /// A shipped gait in all its modes with all numbers of the robot as parameters.
     pub fn of_family(gait: &str) -> Derived {
         let (robot, gait) = specification(gait);
         let chosen = parameters(&robot);
         let values: Vec<f64> = chosen.iter().map(|p| p.value).collect();
-        let (model, kernels) = family_kernels(&Family::new(&robot, &gait, chosen).unwrap());
+        let mut family = Family::new(&robot, &gait, chosen).unwrap();
+        family.mechanism = family.mechanism.clone().with_flight().unwrap_or(family.mechanism);
+        let (model, kernels) = family_kernels(&family);
         let kernels = kernels.gait.into_iter().chain(kernels.sensitivity).chain(kernels.parameters).collect();
         let mut family = Derived { model, kernels, of_robot: vec![(PARAMETERS, values.clone())] };
         let lumps = family.run(LUMPS, &[&values]).get(LUMPS).to_vec();

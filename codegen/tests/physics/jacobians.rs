@@ -1,10 +1,11 @@
 //! Every Jacobian kernel against differences of values, and the staged kernels against the direct ones.
 
-use super::common::Derived;
+use super::common::{Derived, Outputs};
 use super::numbers::{along, assert_close, difference, differences, dot, product, transposed_product};
 use super::robots::Draws;
 use super::state::State;
 use super::support::{largest, prescribed};
+use piaffe_codegen::mechanism::{Mode, Transition};
 
 const TOLERANCE: f64 = 1e-6;
 
@@ -13,42 +14,81 @@ fn halves(w: &[f64]) -> (&[f64], &[f64]) {
     w.split_at(w.len() / 2)
 }
 
-pub fn of_support(d: &Derived, s: &State, leg: usize) {
-    let name = |what: &str| format!("{what}{}", leg + 1);
+/// σ, places and velocities of a mode.
+pub fn of_mode(d: &Derived, s: &State, mode: Mode) {
+    let name = |what: &str| mode.kernel(what);
     let w = [s.q.clone(), s.qd.clone()].concat();
-    let by_w = |kernel: &str, values: &[&str]| -> Vec<f64> {
+    let by_w = |kernel: &str, value: &str| -> Vec<f64> {
         differences(&w, |w| {
             let (q, qd) = halves(w);
-            let r = d.run(&name(kernel), &[q, qd]);
-            values.iter().flat_map(|v| r.get(v).to_vec()).collect()
+            d.run(&name(kernel), &[q, qd]).get(value).to_vec()
         })
     };
     let momentum = d.run(&name("momentum"), &[&s.q, &s.qd]);
-    assert_close("∂σ/∂w", momentum.get("sigma_w"), &by_w("momentum", &["sigma"]), TOLERANCE);
+    assert_close("∂σ/∂w", momentum.get("sigma_w"), &by_w("momentum", "sigma"), TOLERANCE);
     let terms = d.run(&name("momentum_terms"), &[&s.q, &s.qd]);
     assert_eq!(momentum.get("sigma"), terms.get("sigma"));
     let swing = d.run(&name("swing_velocity"), &[&s.q, &s.qd]);
-    assert_close("∂v/∂w", swing.get("v_w"), &by_w("swing_velocity", &["v"]), TOLERANCE);
-    let touchdown = d.run(&name("touchdown"), &[&s.q, &s.qd]);
-    let expected = by_w("touchdown", &["qd_plus", "impulse", "leaving", "landing"]);
-    assert_close("touchdown", touchdown.get("jacobian"), &expected, TOLERANCE * largest(&expected));
+    assert_close("∂v/∂w", swing.get("v_w"), &by_w("swing_velocity", "v"), TOLERANCE);
 
     let place = |q: &[f64]| d.run(&name("placement"), &[q]);
     let placement = place(&s.q);
     assert_close("∂p/∂q", placement.get("p_q"), &differences(&s.q, |q| place(q).get("p").to_vec()), TOLERANCE);
     let expected = differences(&s.q, |q| place(q).get("swing").to_vec());
     assert_close("∂swing/∂q", placement.get("swing_q"), &expected, TOLERANCE);
-    // With the stance foot at the origin the swing foot is where `foot` says.
+    // With the origin of the mode at the world's, the feet in the air are where `foot` says, and move so.
     let x = [placement.get("p"), &s.q].concat();
     let foot = |leg: usize| d.run(&format!("foot{}", leg + 1), &[&x]).get("d").to_vec();
-    assert_close("stance foot", &foot(leg), &vec![0.0; d.mechanism().positions()], 1e-12);
-    assert_close("swing foot", &foot(1 - leg), placement.get("swing"), 1e-12);
+    let feet: Vec<f64> = mode.swinging().flat_map(foot).collect();
+    assert_close("swing feet", placement.get("swing"), &feet, 1e-12);
+    let along_motion = product(placement.get("swing_q"), &s.qd);
+    assert_close("their velocities", swing.get("v"), &along_motion, 1e-12);
+    match mode {
+        Mode::Stance(leg) => assert_close("stance foot", &foot(leg), &vec![0.0; d.mechanism().positions()], 1e-12),
+        Mode::Flight => {
+            let still = vec![0.0; x.len()];
+            let centre = d.run("centre_of_mass", &[&x, &still]).get("position").to_vec();
+            assert_close("mass centre", &centre, &vec![0.0; d.mechanism().positions()], 1e-12);
+        }
+    }
+}
+
+/// What a transition does, by q and the velocities before.
+pub fn of_transition(d: &Derived, s: &State, transition: Transition) {
+    let name = transition.kernel("");
+    let (n, w) = (s.q.len(), before(d, s, transition));
+    let values = |names: &[&'static str], w: &[f64]| -> Vec<f64> {
+        let r = d.run(&name, &[&w[..n], &w[n..]]);
+        names.iter().flat_map(|v| r.get(v).to_vec()).collect()
+    };
+    let now = d.run(&name, &[&w[..n], &w[n..]]);
+    if transition.lands().is_none() {
+        let place = |q: &[f64]| d.run(&name, &[q, &s.qd]).get("r").to_vec();
+        assert_close("∂r/∂q", now.get("r_q"), &differences(&s.q, place), TOLERANCE);
+        assert_close("∂v/∂w", now.get("v_w"), &differences(&w, |w| values(&["v"], w)), TOLERANCE);
+        return;
+    }
+    let rows: &[&'static str] = match transition.leaves() {
+        Some(_) => &["qd_plus", "impulse", "leaving", "landing"],
+        None => &["qd_plus", "impulse", "landing"],
+    };
+    let expected = differences(&w, |w| values(rows, w));
+    assert_close(&name, now.get("jacobian"), &expected, TOLERANCE * largest(&expected));
+}
+
+/// q and the velocities that are given to a transition.
+fn before(d: &Derived, s: &State, transition: Transition) -> Vec<f64> {
+    let velocities = d.kernel(&transition.kernel("")).inputs[1].name;
+    [&s.q[..], if velocities == "qd" { &s.qd } else { &s.xd }].concat()
 }
 
 /// ∂(Γ, F)/∂(q, q̇, Q̈) with β̈ eliminated by the balance row, against differences of `inverse`.
-pub fn of_inverse_dynamics(d: &Derived, s: &State, leg: usize) {
+pub fn of_inverse_dynamics(d: &Derived, s: &State, mode: Mode) {
     let m = d.mechanism();
-    let name = |what: &str| format!("{what}{}", leg + 1);
+    let name = |what: &str| mode.kernel(what);
+    // In flight there is no reaction.
+    let outputs: &[&'static str] = if mode == Mode::Flight { &["gamma"] } else { &["gamma", "f"] };
+    let of = |r: &Outputs| outputs.iter().flat_map(|output| r.get(output).to_vec()).collect::<Vec<f64>>();
     if d.run(&name("momentum_terms"), &[&s.q, &s.qd]).number("f1").abs() < 0.1 {
         return;
     }
@@ -58,34 +98,30 @@ pub fn of_inverse_dynamics(d: &Derived, s: &State, leg: usize) {
     let w = [s.q.clone(), s.qd.clone(), actuated.clone()].concat();
     let direct = inverse(&w);
     let r = d.run(&name("inverse_jacobian"), &[&s.q, &s.qd, &actuated]);
-    let size = largest(direct.get("gamma")).max(largest(direct.get("f")));
-    assert_close("Γ", r.get("gamma"), direct.get("gamma"), 1e-11 * size);
-    assert_close("F", r.get("f"), direct.get("f"), 1e-11 * size);
+    let size = largest(&of(&direct));
+    assert_close("Γ, F", &of(&r), &of(&direct), 1e-11 * size);
     let beta = m.positions() + m.unactuated;
     assert_close("β̈", r.get("beta_dd"), &direct.get("xdd")[beta..=beta], 1e-11 * size);
 
     let rows: Vec<&[f64]> = r.get("jacobian").chunks(3 * n).collect();
-    let (balance, outputs) = rows.split_last().unwrap();
+    let (balance, rows) = rows.split_last().unwrap();
     let column = 2 * n + m.unactuated;
     let free = (0..3 * n).filter(|k| *k != column);
-    let total: Vec<f64> = outputs
-        .iter()
-        .flat_map(|row| free.clone().map(|k| row[k] - row[column] * balance[k] / balance[column]))
-        .collect();
-    let expected = differences(&w, |w| {
-        let r = inverse(w);
-        [r.get("gamma"), r.get("f")].concat()
-    });
+    let total: Vec<f64> =
+        rows.iter().flat_map(|row| free.clone().map(|k| row[k] - row[column] * balance[k] / balance[column])).collect();
+    let expected = differences(&w, |w| of(&inverse(w)));
     assert_close("d(Γ, F)/d(q, q̇, Q̈)", &total, &expected, TOLERANCE * size);
 }
 
 /// Early, then late, is eq. 8 and 9 with all gradients.
-pub fn of_stages(d: &Derived, s: &State, leg: usize) {
+pub fn of_stages(d: &Derived, s: &State, mode: Mode) {
     let m = d.mechanism();
-    let name = |what: &str| format!("{what}{}", leg + 1);
+    let name = |what: &str| mode.kernel(what);
     let terms = |q: &[f64], qd: &[f64]| -> Vec<f64> {
         let r = d.run(&name("momentum_terms"), &[q, qd]);
-        ["f1", "f2", "sigmadot"].map(|v| r.number(v)).to_vec()
+        // In flight nothing turns the robot.
+        let sigmadot = if mode == Mode::Flight { 0.0 } else { r.number("sigmadot") };
+        vec![r.number("f1"), r.number("f2"), sigmadot]
     };
     let early = d.run(&name("early"), &[&prescribed(m, &s.q), &prescribed(m, &s.qd)]).get("early").to_vec();
     let beta = [s.q[m.unactuated]];
@@ -107,19 +143,34 @@ pub fn of_stages(d: &Derived, s: &State, leg: usize) {
         // The whole robot turns with β: f1 and f2 do not contain it.
         let by_beta = &d.kernel(&name("late")).outputs[1].values;
         assert!(by_beta[0].is_zero() && by_beta[1].is_zero(), "f1 and f2 contain β");
+        if mode == Mode::Flight {
+            // So β is an integral of what is known before it, without an operation left for later.
+            assert!(d.kernel("flight_late").outputs[0].values.iter().all(|p| p.is_zero() || p.as_term().is_some()));
+        }
     }
 }
 
-/// The weighted second derivatives of an instant and of a touchdown.
-pub fn of_curvature(d: &Derived, s: &State, draws: &mut Draws, leg: usize) {
+/// Weights for an input of a kernel.
+fn weights(d: &Derived, kernel: &str, input: &str, draws: &mut Draws) -> Vec<f64> {
+    let found = d.kernel(kernel).inputs.iter().find(|i| i.name == input);
+    draws.vector(found.map_or(0, |input| input.symbols.len()), 1.0)
+}
+
+/// The weighted second derivatives of an instant.
+pub fn of_curvature(d: &Derived, s: &State, draws: &mut Draws, mode: Mode) {
     let (n, positions) = (s.q.len(), d.mechanism().positions());
-    let name = |what: &str| format!("{what}{}", leg + 1);
-    let weights = |kernel: &str, input: usize, draws: &mut Draws| {
-        draws.vector(d.kernel(&name(kernel)).inputs[input].symbols.len(), 1.0)
-    };
-    let [nu, phi, others] = [3, 4, 5].map(|input| weights("curvature", input, draws));
+    let name = |what: &str| mode.kernel(what);
+    let kernel = name("curvature");
+    let [nu, phi, others] = ["n", "phi", "others"].map(|input| weights(d, &kernel, input, draws));
     let w = [s.q.clone(), s.qd.clone(), s.qdd.clone()].concat();
-    let run = |w: &[f64]| d.run(&name("curvature"), &[&w[..n], &w[n..2 * n], &w[2 * n..], &nu, &phi, &others]);
+    let of_forces = |w: &[f64], phi: &[f64]| {
+        let (q, qd, qdd) = (&w[..n], &w[n..2 * n], &w[2 * n..]);
+        match mode {
+            Mode::Stance(_) => d.run(&kernel, &[q, qd, qdd, &nu, phi, &others]),
+            Mode::Flight => d.run(&kernel, &[q, qd, qdd, &nu, &others]),
+        }
+    };
+    let run = |w: &[f64]| of_forces(w, &phi);
     let now = run(&w);
     let gradient = differences(&w, |w| run(w).get("gradient").to_vec());
     let block = |row: usize, column: usize| -> Vec<f64> {
@@ -141,57 +192,81 @@ pub fn of_curvature(d: &Derived, s: &State, draws: &mut Draws, leg: usize) {
             let q = along(&along(q, t, qd), 0.5 * t * t, qdd);
             d.run(&name("momentum"), &[&q, &along(qd, t, qdd)]).get("sigma").to_vec()
         };
-        forces.push(difference(sigma)[0] - d.run(&name("momentum_terms"), &[q, qd]).number("sigmadot"));
         let terms = d.run(&name("momentum_terms"), &[q, qd]);
+        let stands = mode != Mode::Flight;
+        let sigmadot = stands.then(|| terms.number("sigmadot"));
+        forces.push(difference(sigma)[0] - sigmadot.unwrap_or(0.0));
         let placement = d.run(&name("placement"), &[q]);
         let velocity = d.run(&name("swing_velocity"), &[q, qd]);
-        let others_now = [
-            terms.number("sigma"),
-            terms.number("sigmadot"),
-            placement.get("swing")[1],
-            placement.get("p")[0],
-            velocity.get("v")[1],
-            placement.get("p")[1],
-        ];
+        let vertical = |of_feet: &[f64]| of_feet.chunks(positions).map(|foot| foot[1]).collect::<Vec<f64>>();
+        let mut others_now = vec![terms.number("sigma")];
+        others_now.extend(sigmadot);
+        others_now.extend(vertical(placement.get("swing")));
+        others_now.push(placement.get("p")[0]);
+        others_now.extend(vertical(velocity.get("v")));
+        others_now.push(placement.get("p")[1]);
         vec![dot(&forces, &nu) + dot(&others_now, &others)]
     };
-    let still = vec![0.0; positions];
-    let without_reaction = d.run(&name("curvature"), &[&s.q, &s.qd, &s.qdd, &nu, &still, &others]);
+    let without_reaction = of_forces(&w, &vec![0.0; positions]);
     assert_close("gradient", without_reaction.get("gradient"), &differences(&w, value), TOLERANCE);
+}
 
-    let [xi, outputs] = [2, 3].map(|input| weights("touchdown_curvature", input, draws));
+/// The weighted second derivatives of a transition.
+pub fn of_transitions_curvature(d: &Derived, s: &State, draws: &mut Draws, transition: Transition) {
+    let (kernel, values) = (transition.kernel("_curvature"), transition.kernel(""));
+    let (n, w) = (s.q.len(), before(d, s, transition));
+    let columns = w.len();
+    let mut found = vec![0.0; columns * columns];
+    if transition.lands().is_none() {
+        let weights = weights(d, &kernel, "weights", draws);
+        let curvature = d.run(&kernel, &[&w[..n], &w[n..], &weights]);
+        for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+            found[i * columns + j] = curvature.get("q_q")[i * n + j];
+            let mixed = curvature.get("q_qd")[i * n + j];
+            (found[i * columns + n + j], found[(n + j) * columns + i]) = (mixed, mixed);
+        }
+        let gradient = |w: &[f64]| {
+            let r = d.run(&values, &[&w[..n], &w[n..]]);
+            let (place, velocity) = weights.split_at(r.get("r").len());
+            let by_q = transposed_product(r.get("r_q"), place);
+            let by_w = transposed_product(r.get("v_w"), velocity);
+            by_w.iter().enumerate().map(|(k, x)| x + by_q.get(k).unwrap_or(&0.0)).collect()
+        };
+        return assert_close("take-off's Hessian", &found, &differences(&w, gradient), TOLERANCE);
+    }
+    let [xi, outputs] = ["xi", "outputs"].map(|input| weights(d, &kernel, input, draws));
     let all = [&xi[..], &outputs].concat();
-    let w = &w[..2 * n];
     let jacobian = |w: &[f64]| {
-        let touchdown = d.run(&name("touchdown"), &[&w[..n], &w[n..]]);
-        let couple = if outputs.len() > positions + 2 { touchdown.get("couple_jacobian") } else { &[] };
-        [touchdown.get("jacobian"), couple].concat()
+        let r = d.run(&values, &[&w[..n], &w[n..]]);
+        let own = r.get("jacobian");
+        let couple = if own.len() < all.len() * columns { r.get("couple_jacobian") } else { &[] };
+        [own, couple].concat()
     };
-    let expected = differences(w, |w| transposed_product(&jacobian(w), &all));
-    let curvature = d.run(&name("touchdown_curvature"), &[&s.q, &s.qd, &xi, &outputs]);
-    let plus = jacobian(w);
-    let mut found = vec![0.0; 4 * n * n];
+    let expected = differences(&w, |w| transposed_product(&jacobian(w), &all));
+    let curvature = d.run(&kernel, &[&w[..n], &w[n..], &xi, &outputs]);
+    let mixed = curvature.get(if columns == 2 * n { "q_qd" } else { "q_xd" });
+    let plus = jacobian(&w);
     for i in 0..n {
-        for j in 0..2 * n {
+        for j in 0..columns {
             // [q_q, q_qd; ·, 0] + [q_plus; 0] J + its transpose.
-            let through: f64 = (0..n).map(|k| curvature.get("q_plus")[i * n + k] * plus[k * 2 * n + j]).sum();
-            found[i * 2 * n + j] += through;
-            found[j * 2 * n + i] += through;
+            let through: f64 = (0..n).map(|k| curvature.get("q_plus")[i * n + k] * plus[k * columns + j]).sum();
+            found[i * columns + j] += through;
+            found[j * columns + i] += through;
             if j < n {
-                found[i * 2 * n + j] += curvature.get("q_q")[i * n + j];
+                found[i * columns + j] += curvature.get("q_q")[i * n + j];
             } else {
-                let mixed = curvature.get("q_qd")[i * n + j - n];
-                found[i * 2 * n + j] += mixed;
-                found[j * 2 * n + i] += mixed;
+                let mixed = mixed[i * (columns - n) + j - n];
+                found[i * columns + j] += mixed;
+                found[j * columns + i] += mixed;
             }
         }
     }
-    assert_close("touchdown's Hessian", &found, &expected, TOLERANCE * largest(&expected));
+    assert_close("an impact's Hessian", &found, &expected, TOLERANCE * largest(&expected));
 }
 
 /// Heights and the second derivatives of their weighted sum.
-pub fn of_heights(d: &Derived, s: &State, draws: &mut Draws, leg: usize) {
-    let name = |what: &str| format!("{what}{}", leg + 1);
+pub fn of_heights(d: &Derived, s: &State, draws: &mut Draws, mode: Mode) {
+    let name = |what: &str| mode.kernel(what);
     let values = |q: &[f64]| d.run(&name("heights"), &[q]).get("heights").to_vec();
     let now = d.run(&name("heights"), &[&s.q]);
     assert_close("∂heights/∂q", now.get("jacobian"), &differences(&s.q, values), TOLERANCE);

@@ -4,6 +4,7 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod flight;
 mod floating;
 mod gaits;
 mod heights;
@@ -16,7 +17,7 @@ mod support;
 mod whole;
 
 use common::Derived;
-use piaffe_codegen::mechanism::Mechanism;
+use piaffe_codegen::mechanism::{Mechanism, Mode};
 use piaffe_codegen::spec::Rotation;
 use proptest::prelude::*;
 use proptest::test_runner::{RngSeed, TestRunner};
@@ -27,6 +28,9 @@ use state::State;
 const STATES: usize = 2;
 
 fn obeys_all_laws(mechanism: &Mechanism, draws: &mut Draws) {
+    let flies = mechanism.clone().with_flight();
+    assert_eq!(flies.is_err(), mechanism.rotation == Rotation::Roll);
+    let mechanism = &flies.unwrap_or_else(|_| mechanism.clone());
     let d = Derived::new(mechanism);
     let turning = (mechanism.rotation == Rotation::None).then(|| {
         Derived::new(&Mechanism { rotation: Rotation::Pitch, unactuated: mechanism.joints.len(), ..mechanism.clone() })
@@ -40,11 +44,25 @@ fn obeys_all_laws(mechanism: &Mechanism, draws: &mut Draws) {
             support::momenta(&d, &s, leg);
             support::dynamics(&d, turning.as_ref(), &s, leg);
             impact::one_foot(&d, &s, leg);
-            jacobians::of_support(&d, &s, leg);
-            jacobians::of_inverse_dynamics(&d, &s, leg);
-            jacobians::of_stages(&d, &s, leg);
-            jacobians::of_curvature(&d, &s, draws, leg);
-            jacobians::of_heights(&d, &s, draws, leg);
+        }
+        if mechanism.modes.contains(&Mode::Flight) {
+            flight::momenta(&d, &s);
+            flight::dynamics(&d, turning.as_ref(), &s);
+            for leg in 0..2 {
+                flight::take_off(&d, &s, leg);
+                flight::landing(&d, &s, leg);
+            }
+        }
+        for mode in mechanism.modes.iter().copied() {
+            jacobians::of_mode(&d, &s, mode);
+            jacobians::of_inverse_dynamics(&d, &s, mode);
+            jacobians::of_stages(&d, &s, mode);
+            jacobians::of_curvature(&d, &s, draws, mode);
+            jacobians::of_heights(&d, &s, draws, mode);
+        }
+        for transition in mechanism.transitions() {
+            jacobians::of_transition(&d, &s, transition);
+            jacobians::of_transitions_curvature(&d, &s, draws, transition);
         }
         impact::both_feet(&d, &s);
     }
