@@ -47,6 +47,7 @@ fn row(links: usize) -> String {
     let factor = processor_time() - start - derive;
     let start = processor_time();
     let source = gait_source(&mechanism, || (Vec::new(), String::new()), "chain", "whole", None, "growth");
+    let source = source.expect("the chain can be written");
     let all = processor_time() - start;
     let files = RobotFiles { module: "chain".into(), robot, gaits: vec![gait] };
     let files = generate(&[files], None).expect("the chain is generated");

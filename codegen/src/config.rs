@@ -113,7 +113,7 @@ impl Config {
             (_, None) => return Err("a family of robots is no use without its runtime: drop functions_only()".into()),
         };
         let mut files = files.map_err(|why| why + &how_to_set_aside(&self.folder, &robots))?;
-        files.push(("specification.rs".into(), specification(&self.folder, &robots)));
+        files.push((emit::SPECIFICATION_FILE.into(), specification(&self.folder, &robots)?));
         for (name, source) in files {
             write_if_changed(&out.join(&name), &source).map_err(|e| format!("cannot write {name}: {e}"))?;
         }
@@ -124,18 +124,11 @@ impl Config {
 }
 
 /// What a program needs to see whether it was built from what is there now: the folder, and its files with their SHA-256.
-fn specification(folder: &Path, robots: &[RobotFiles]) -> String {
+fn specification(folder: &Path, robots: &[RobotFiles]) -> Result<String, String> {
     let slashes = |path: &str| path.replace(std::path::MAIN_SEPARATOR, "/");
-    let entry = |file: &SpecFile| {
-        let (path, digest) = (slashes(&file.path), sha256(&[file]));
-        format!("    ({path:?}, {digest:?}),\n")
-    };
-    let files: String = robots.iter().flat_map(|r| std::iter::once(&r.robot).chain(&r.gaits)).map(entry).collect();
-    format!(
-        "/// The folder of the specification, from the package's root.\npub const FOLDER: &str = {:?};\n\
-         /// Its files when this was built, with their SHA-256.\npub const FILES: &[(&str, &str)] = &[\n{files}];\n",
-        slashes(&folder.display().to_string())
-    )
+    let files = robots.iter().flat_map(|r| std::iter::once(&r.robot).chain(&r.gaits));
+    let files: Vec<_> = files.map(|file| (slashes(&file.path), sha256(&[file]))).collect();
+    emit::specification_source(&slashes(&folder.display().to_string()), &files).map_err(|e| e.to_string())
 }
 
 /// Of files one after the other.
@@ -240,11 +233,12 @@ pub fn generate(robots: &[RobotFiles], runtime: Option<&str>) -> Result<Vec<Gene
         let beside = || (levers(&robot.spec, gait), latex(&robot.spec, gait, &mechanism));
         let whole = robot.wholes().iter().position(|angles| **angles == gait.locked).unwrap_or_default();
         let source = emit::gait_source(&mechanism, beside, module, &emit::whole_module(whole), runtime, origin);
-        Ok((emit::file_name(module, &gait.name), source))
+        Ok((emit::file_name(module, &gait.name), source.map_err(|e| robot.cannot_write(&gait.name, &e))?))
     };
     let whole_file = |robot: &Parsed, number: usize, angles: &Angles| {
         let whole = Whole::new(&locked(&robot.spec, angles)?);
         let source = emit::whole_source(&whole, runtime, &origin(&[&robot.files.robot]));
+        let source = source.map_err(|e| robot.cannot_write("whole robot", &e))?;
         Ok((emit::whole_file_name(&robot.files.module, number), source))
     };
     // Whole robots first: they have the kernel that takes longest.
@@ -258,7 +252,8 @@ pub fn generate(robots: &[RobotFiles], runtime: Option<&str>) -> Result<Vec<Gene
     let mut files = together(jobs)?;
     let wholes: Vec<usize> = parsed.iter().map(|robot| robot.wholes().len()).collect();
     let registry = emit::registry_source(&all_modules(&parsed), &wholes, runtime, &origin_of_all(robots));
-    files.push(("gaits.rs".into(), registry));
+    files.push(("gaits.rs".into(), registry.map_err(|e| e.to_string())?));
+    files.push(math());
     Ok(files)
 }
 
@@ -279,12 +274,19 @@ pub fn generate_families(
         let family = Family::new(&robot.spec, gait, select(robot)?)?;
         let latex = latex(&robot.spec, gait, &family.mechanism);
         let source = emit::family_source(&family, &robot.files.module, &latex, runtime, origin);
+        let source = source.map_err(|e| robot.cannot_write(&gait.name, &e))?;
         Ok((emit::family_file_name(&robot.files.module, &gait.name), source))
     };
     let mut files = together(for_each_gait(&parsed, &file))?;
     let registry = emit::families_source(&all_modules(&parsed), &chosen, runtime, &origin_of_all(robots));
-    files.push(("families.rs".into(), registry));
+    files.push(("families.rs".into(), registry.map_err(|e| e.to_string())?));
+    files.push(math());
     Ok(files)
+}
+
+/// The file with the elementary functions.
+fn math() -> Generated {
+    (emit::MATH_FILE.into(), emit::MATH.into())
 }
 
 /// A robot with its gaits and the headers of their generated files.
@@ -302,6 +304,11 @@ impl Parsed<'_> {
         let names = self.gaits.iter().map(|(gait, _)| gait.name.as_str());
         let gaits = names.zip(self.sources.iter().cloned()).collect();
         Named { folder: &self.files.module, file: &self.source, gaits }
+    }
+
+    /// What a number or a name of the robot did to the generated code.
+    fn cannot_write(&self, what: &str, why: &emit::Unwritable) -> String {
+        format!("{}: the {what} cannot be derived with these numbers: {why}", visible(&self.files.robot.path, false))
     }
 
     /// The different ways in which the gaits lock joints: for each there is a whole robot.

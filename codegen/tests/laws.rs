@@ -5,7 +5,8 @@ mod common;
 
 use common::{Derived, FAMILIES, GAITS, files, in_all_modes, specification};
 use piaffe_codegen::dynamics::{Input, whole_kernels};
-use piaffe_codegen::mechanism::Whole;
+use piaffe_codegen::emit::{MATH_FILE, gait_source};
+use piaffe_codegen::mechanism::{Lever, Mechanism, Whole};
 use piaffe_codegen::program::Program;
 use piaffe_codegen::spec::name::{ITEMS, type_name};
 use piaffe_codegen::{Generated, RobotFiles, SpecFile, generate, generate_families};
@@ -205,7 +206,7 @@ impl<'ast> Visit<'ast> for Law {
 #[test]
 fn kernels_are_straight_lines() {
     for (name, source) in generated("model-spec/") {
-        if name == "gaits.rs" || name == "families.rs" {
+        if ["gaits.rs", "families.rs", MATH_FILE].contains(&name.as_str()) {
             continue;
         }
         let mut law = Law::default();
@@ -264,7 +265,7 @@ fn what_a_gaits_module_needs_cannot_be_a_gaits_name() {
     let mut needed = Items::default();
     for (name, source) in generated("model-spec/") {
         let gait = name.trim_end_matches(".rs").rsplit('/').next().unwrap();
-        if !["gaits", "families", "whole"].contains(&gait) {
+        if !["gaits", "families", "whole", "math"].contains(&gait) {
             let mut items = Items::default();
             items.visit_file(&syn::parse_file(&source).unwrap());
             assert!(items.0.remove(&type_name(gait)), "{name} has a type of its own");
@@ -274,6 +275,28 @@ fn what_a_gaits_module_needs_cannot_be_a_gaits_name() {
     let mut known: Vec<&str> = ITEMS.to_vec();
     known.sort_unstable();
     assert_eq!(needed.0.iter().collect::<Vec<_>>(), known, "write these into spec/name.rs");
+}
+
+/// What no specification gives, a name that is none and numbers that are none, ends as words and not as code.
+#[test]
+fn what_cannot_be_code_is_said() {
+    type Change = fn(&mut Mechanism);
+    let said = |change: Change, value: f64| {
+        let mut mechanism = shipped("trot");
+        change(&mut mechanism);
+        let lever = Lever { name: "a".into(), numbers: Vec::new(), unit: "", value, slopes: Vec::new() };
+        let beside = || (vec![lever], String::new());
+        gait_source(&mechanism, beside, "", "whole", Some("crate::model"), "here").unwrap_err().to_string()
+    };
+    let names: [Change; 3] = [|m| m.gait = "self".into(), |m| m.gait = "1".into(), |m| m.gait.clear()];
+    for change in names {
+        assert!(said(change, 1.0).ends_with("cannot be a name in Rust"));
+    }
+    let numbers: [Change; 2] = [|m| m.gravity = f64::NAN, |m| m.joints[0].gear = f64::INFINITY];
+    for change in numbers {
+        assert!(said(change, 1.0).ends_with("cannot be a number in Rust"));
+    }
+    assert_eq!(said(|_| (), f64::NAN), "NaN cannot be a number in Rust");
 }
 
 /// The pinned sine and cosine: arithmetic and bits, no branch, no panic.

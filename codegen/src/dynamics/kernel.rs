@@ -39,18 +39,24 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// The indices of all its numbers, as they are written behind a name.
-    pub fn places(self) -> impl Iterator<Item = String> {
+    /// The indices of each of its numbers, in order.
+    pub fn places(self) -> impl Iterator<Item = Vec<usize>> {
         let (rows, columns) = match self {
             Shape::Scalar => (1, 1),
             Shape::Vector(n) => (n, 1),
             Shape::Matrix(rows, columns) => (rows, columns),
         };
         (0..rows * columns).map(move |k| match self {
-            Shape::Scalar => String::new(),
-            Shape::Vector(_) => format!("[{k}]"),
-            Shape::Matrix(..) => format!("[{}][{}]", k / columns, k % columns),
+            Shape::Scalar => Vec::new(),
+            Shape::Vector(_) => vec![k],
+            Shape::Matrix(..) => vec![k / columns, k % columns],
         })
+    }
+}
+
+impl Input {
+    pub fn shape(&self) -> Shape {
+        if self.scalar { Shape::Scalar } else { Shape::Vector(self.symbols.len()) }
     }
 }
 

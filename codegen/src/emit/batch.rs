@@ -4,32 +4,30 @@
 //! loop over them would keep the outer one from vectorizing.
 
 use super::body;
-use super::function::{Function, shape_type};
-use super::layout::{Layout, indent, line};
-use crate::dynamics::Shape;
-use std::fmt::Write;
+use super::function::Function;
+use super::tokens::{Written, doc, ident, shape_type};
+use proc_macro2::TokenStream;
+use quote::{format_ident, quote};
 
 /// `kernel_batch` of a kernel with several outputs, with an array of lanes for every number.
-pub fn source(function: &Function) -> String {
-    let kernel = &function.kernel;
-    let single = &kernel.name;
-    let mut source = String::new();
-    let _ = writeln!(
-        source,
-        "/// [`{single}`] of `N` states, with the same bits. Vectors and matrices are of lanes.\n#[inline]"
-    );
-    let lanes = "[f64; N]";
-    let parameters = kernel.inputs.iter().map(|i| {
-        let shape = if i.scalar { Shape::Scalar } else { Shape::Vector(i.symbols.len()) };
-        format!("{}: &{}", i.name, shape_type(shape, lanes))
+pub fn tokens(function: &Function) -> Written<TokenStream> {
+    let single = ident(&function.kernel.name)?;
+    let doc = doc(&format!("[`{single}`] of `N` states, with the same bits. Vectors and matrices are of lanes."));
+    let (batch, result) = (format_ident!("{single}_batch"), function.struct_name()?);
+    let lanes = quote!([f64; N]);
+    let inputs = function.kernel.inputs.iter().map(|input| {
+        let (name, ty) = (ident(input.name)?, shape_type(input.shape(), &lanes));
+        Ok(quote!(#name: &#ty))
     });
-    let result = format!("out: &mut {}<{lanes}>", function.struct_name());
-    let parameters = parameters.chain([result]).map(Layout::Sum);
-    Layout::list(format!("pub fn {single}_batch<const N: usize>("), parameters, ") {").write(&mut source, 0);
-    line(&mut source, "for lane in 0..N {", 1);
-    body::write_lane(function, &mut source);
-    line(&mut source, "}", 1);
-    line(&mut source, "}", 0);
-    indent(&mut source, 0);
-    source
+    let inputs = inputs.collect::<Written<Vec<_>>>()?;
+    let body = body::of_lane(function)?;
+    Ok(quote! {
+        #doc
+        #[inline]
+        pub fn #batch<const N: usize>(#(#inputs,)* out: &mut #result<#lanes>) {
+            for lane in 0..N {
+                #body
+            }
+        }
+    })
 }

@@ -1,12 +1,13 @@
 //! The body of a kernel: a straight line of `let`s over named values, and what becomes of its outputs.
 
 use super::function::Function;
-use super::layout::{Layout, indent, line};
 use super::scopes::{Scopes, Statement};
-use crate::dynamics::Shape;
+use super::tokens::{Written, ident, size, whole};
+use crate::dynamics::{Input, Shape};
 use crate::expr::Kind;
 use crate::program::{Id, Node, Sum, Term};
-use std::fmt::Write;
+use proc_macro2::{Ident, Punct, Spacing, TokenStream, TokenTree};
+use quote::{format_ident, quote};
 
 /// Angles whose sines and cosines are evaluated at once, at most.
 const AT_ONCE: usize = 4;
@@ -26,62 +27,62 @@ struct Body<'a> {
     function: &'a Function<'a>,
     order: Vec<Id>,
     used: Vec<bool>,
-    names: Vec<String>,
+    names: Vec<Ident>,
     form: Form,
 }
 
-/// Writes the body of a function for one state.
-pub fn write(function: &Function, out: &mut String) {
-    let body = Body::new(function, Form::Single);
-    body.inputs(out);
-    body.scopes(true).write(&body.bindings(), out);
-    body.result(out);
+/// The body of a function for one state.
+pub fn of_state(function: &Function) -> Written<TokenStream> {
+    let body = Body::new(function, Form::Single)?;
+    let (inputs, result) = (body.inputs()?, body.result()?);
+    let lines = body.scopes(true).tokens(body.bindings()?);
+    Ok(quote!(#inputs #lines #result))
 }
 
-/// Writes the body of a loop over lanes, from inputs and to outputs that are arrays of lanes.
-pub fn write_lane(function: &Function, out: &mut String) {
-    let body = Body::new(function, Form::Lane);
-    body.inputs(out);
-    body.scopes(false).write(&body.with_stores(body.bindings()), out);
+/// The body of a loop over lanes, from inputs and to outputs that are arrays of lanes.
+pub fn of_lane(function: &Function) -> Written<TokenStream> {
+    let body = Body::new(function, Form::Lane)?;
+    let inputs = body.inputs()?;
+    let lines = body.scopes(false).tokens(body.with_stores(body.bindings()?)?);
+    Ok(quote!(#inputs #lines))
 }
 
-fn name(function: &Function, id: usize, node: Node) -> String {
-    match node {
-        Node::Input(i, k) => input_name(function, i, k),
-        Node::Sin(s) => format!("sin{s}"),
-        Node::Cos(s) => format!("cos{s}"),
-        Node::Value(_) | Node::Reciprocal(_) => format!("v{id}"),
-    }
+fn name(function: &Function, id: usize, node: Node) -> Written<Ident> {
+    Ok(match node {
+        Node::Input(i, k) => input_name(function, i, k)?,
+        Node::Sin(s) => format_ident!("sin{s}"),
+        Node::Cos(s) => format_ident!("cos{s}"),
+        Node::Value(_) | Node::Reciprocal(_) => format_ident!("v{id}"),
+    })
 }
 
-fn input_name(function: &Function, input: usize, element: usize) -> String {
+fn input_name(function: &Function, input: usize, element: usize) -> Written<Ident> {
     match function.ring.kind(function.kernel.inputs[input].symbols[element]) {
-        Kind::Symbol(name) => name,
-        _ => format!("in{input}_{element}"),
+        Kind::Symbol(name) => ident(&name),
+        _ => Ok(format_ident!("in{input}_{element}")),
     }
+}
+
+fn sign(sign: char) -> TokenTree {
+    Punct::new(sign, Spacing::Alone).into()
 }
 
 impl<'a> Body<'a> {
-    fn new(function: &'a Function, form: Form) -> Body<'a> {
+    fn new(function: &'a Function, form: Form) -> Written<Body<'a>> {
         let order = function.program.schedule_sines_first();
         let mut used = vec![false; function.program.nodes.len()];
         order.iter().for_each(|id| used[*id as usize] = true);
-        let names = function.program.nodes.iter().enumerate().map(|(id, node)| name(function, id, *node)).collect();
-        Body { function, order, used, names, form }
+        let names = function.program.nodes.iter().enumerate().map(|(id, node)| name(function, id, *node));
+        Ok(Body { function, order, used, names: names.collect::<Written<_>>()?, form })
     }
 
     /// The scopes of its statements; whether the outputs are evaluated behind them.
     fn scopes(&self, outputs_follow: bool) -> Scopes<'_> {
-        Scopes { program: &self.function.program, names: &self.names, outputs_follow, depth: self.depth() }
-    }
-
-    /// Indents of its lines.
-    fn depth(&self) -> usize {
-        if self.form == Form::Lane { 2 } else { 1 }
+        Scopes { program: &self.function.program, names: &self.names, outputs_follow }
     }
 
     /// Inputs by the names of their elements.
-    fn inputs(&self, out: &mut String) {
+    fn inputs(&self) -> Written<TokenStream> {
         let program = &self.function.program;
         let mut used: Vec<Vec<bool>> =
             self.function.kernel.inputs.iter().map(|i| vec![false; i.symbols.len()]).collect();
@@ -90,30 +91,30 @@ impl<'a> Body<'a> {
                 used[*i][*k] |= self.used[id];
             }
         }
-        for (i, input) in self.function.kernel.inputs.iter().enumerate() {
-            if input.scalar {
-                let name = input_name(self.function, i, 0);
-                match self.form {
-                    Form::Lane => line(out, &format!("let {name} = {}[lane];", input.name), self.depth()),
-                    Form::Single if name != input.name => {
-                        line(out, &format!("let {name} = {};", input.name), self.depth());
-                    }
-                    Form::Single => {}
-                }
-                continue;
-            }
-            indent(out, self.depth());
-            let name = |k: usize| if used[i][k] { input_name(self.function, i, k) } else { "_".into() };
-            let elements = 0..input.symbols.len();
-            let names = elements.clone().map(|k| Layout::Sum(name(k)));
-            if self.form == Form::Single {
-                Layout::list("let [", names, format!("] = *{};", input.name)).write(out, self.depth());
-            } else {
-                Layout::list("let [", names, "] = ").write(out, self.depth());
-                let of_lane = elements.map(|k| Layout::Word(format!("{}[{k}][lane]", input.name)));
-                Layout::list("[", of_lane, "];").write(out, self.depth());
-            }
+        let inputs = self.function.kernel.inputs.iter().enumerate();
+        inputs.map(|(i, input)| self.input(i, input, &used[i])).collect()
+    }
+
+    /// Input `i`, of which these elements are used.
+    fn input(&self, i: usize, input: &Input, used: &[bool]) -> Written<TokenStream> {
+        let array = ident(input.name)?;
+        if input.scalar {
+            let name = input_name(self.function, i, 0)?;
+            return Ok(match self.form {
+                Form::Lane => quote!(let #name = #array[lane];),
+                Form::Single if name != array => quote!(let #name = #array;),
+                Form::Single => TokenStream::new(),
+            });
         }
+        let name = |k: usize| Ok(if used[k] { input_name(self.function, i, k)? } else { format_ident!("_") });
+        let names = (0..used.len()).map(name).collect::<Written<Vec<_>>>()?;
+        Ok(match self.form {
+            Form::Single => quote!(let [#(#names),*] = *#array;),
+            Form::Lane => {
+                let places = (0..used.len()).map(whole);
+                quote!(let [#(#names),*] = [#(#array[#places][lane]),*];)
+            }
+        })
     }
 
     /// Arguments of sines and cosines, with the nodes that are their sine and cosine.
@@ -136,56 +137,67 @@ impl<'a> Body<'a> {
     }
 
     /// A `let` for every node, but for sines and cosines, which are bound some at once.
-    fn bindings(&self) -> Vec<Statement> {
+    fn bindings(&self) -> Written<Vec<Statement>> {
         let program = &self.function.program;
         let mut sines = self.sines();
         let mut bindings = Vec::with_capacity(self.order.len());
         for id in &self.order {
             let name = &self.names[*id as usize];
-            let (s, text) = match program.nodes[*id as usize] {
+            let (s, lines) = match program.nodes[*id as usize] {
                 Node::Input(..) => continue,
                 Node::Sin(_) | Node::Cos(_) => {
                     // They follow one another: with the first, all are bound.
-                    let sines = std::mem::take(&mut sines);
-                    bindings.extend(sines.chunks(AT_ONCE).map(|pairs| self.sines_of(pairs)));
+                    for pairs in std::mem::take(&mut sines).chunks(AT_ONCE) {
+                        bindings.push(self.sines_of(pairs)?);
+                    }
                     continue;
                 }
-                Node::Value(s) => (s, self.sum(&["let ", name, " = "], &program.sums[s], ";")),
-                Node::Reciprocal(s) => (s, self.sum(&["let ", name, " = 1.0 / ("], &program.sums[s], ");")),
+                Node::Value(s) => {
+                    let value = self.value(s)?;
+                    (s, quote!(let #name = #value;))
+                }
+                Node::Reciprocal(s) => {
+                    let value = self.value(s)?;
+                    (s, quote!(let #name = 1.0 / (#value);))
+                }
             };
-            bindings.push(Statement { nodes: vec![*id], sums: vec![s], lines: vec![text] });
+            bindings.push(Statement { nodes: vec![*id], sums: vec![s], lines });
         }
-        bindings
+        Ok(bindings)
     }
 
     /// Sines and cosines of the arguments that are these sums.
-    fn sines_of(&self, pairs: &[(usize, [Option<Id>; 2])]) -> Statement {
-        let arguments: Vec<_> = pairs.iter().map(|(s, _)| self.value(*s)).collect();
-        let name = |id: Option<Id>| id.map_or("_", |id| &self.names[id as usize]);
-        let values: Vec<_> = pairs.iter().map(|(_, [sin, cos])| format!("({}, {})", name(*sin), name(*cos))).collect();
-        let (arguments, values) = (arguments.join(", "), values.join(", "));
-        let text = match (pairs.len(), self.form) {
-            (1, _) => format!("let {values} = math::sin_cos({arguments});"),
-            (_, Form::Single) => format!("let [{values}] = math::sin_cos_together([{arguments}]);"),
-            (_, Form::Lane) => format!("let [{values}] = math::sin_cos_in_step([{arguments}]);"),
+    fn sines_of(&self, pairs: &[(usize, [Option<Id>; 2])]) -> Written<Statement> {
+        let arguments = pairs.iter().map(|(s, _)| self.value(*s)).collect::<Written<Vec<_>>>()?;
+        let name = |id: Option<Id>| id.map_or(quote!(_), |id| TokenTree::from(self.names[id as usize].clone()).into());
+        let values = pairs.iter().map(|(_, pair)| {
+            let [sin, cos] = pair.map(name);
+            quote!((#sin, #cos))
+        });
+        let lines = match (pairs.len(), self.form) {
+            (1, _) => quote!(let #(#values)* = math::sin_cos(#(#arguments)*);),
+            (_, Form::Single) => quote!(let [#(#values),*] = math::sin_cos_together([#(#arguments),*]);),
+            (_, Form::Lane) => quote!(let [#(#values),*] = math::sin_cos_in_step([#(#arguments),*]);),
         };
         let nodes = pairs.iter().flat_map(|(_, pair)| pair).flatten().copied().collect();
-        Statement { nodes, sums: pairs.iter().map(|(s, _)| *s).collect(), lines: vec![text] }
+        Ok(Statement { nodes, sums: pairs.iter().map(|(s, _)| *s).collect(), lines })
     }
 
     /// The bindings, and after each the outputs that it makes known. Sums that are several outputs follow in the end: they
     /// are not at hand yet, and evaluated early they take registers away.
-    fn with_stores(&self, bindings: Vec<Statement>) -> Vec<Statement> {
+    fn with_stores(&self, bindings: Vec<Statement>) -> Written<Vec<Statement>> {
         let (kernel, program) = (self.function.kernel, &self.function.program);
         // After how many bindings each node is known.
         let mut known = vec![0; program.nodes.len()];
         for (number, binding) in bindings.iter().enumerate() {
             binding.nodes.iter().for_each(|id| known[*id as usize] = number + 1);
         }
-        let mut places: Vec<Vec<String>> = vec![Vec::new(); program.sums.len()];
+        let mut places: Vec<Vec<TokenStream>> = vec![Vec::new(); program.sums.len()];
         for (output, sums) in kernel.outputs.iter().zip(&program.outputs) {
+            let name = ident(output.name)?;
             for (place, s) in output.shape.places().zip(sums) {
-                places[*s].push(format!("out.{}{place}[lane] = ", output.name));
+                let place = place.into_iter().map(whole);
+                places[*s].push(quote!(out.#name #([#place])* [lane]));
             }
         }
         let shared = self.shared();
@@ -195,11 +207,11 @@ impl<'a> Body<'a> {
             if places.is_empty() {
                 continue;
             }
-            let value = self.output(*s, &shared);
-            let bound = shared[*s].then(|| self.sum(&["let ", &value, " = "], &program.sums[*s], ";"));
-            let lines = bound.into_iter().chain(places.into_iter().map(|place| place + &value + ";")).collect();
+            let value = self.output(*s, &shared)?;
+            let bound = if shared[*s] { self.bound(*s)? } else { TokenStream::new() };
             let ready = program.sums[*s].iter().flat_map(|t| &t.factors).map(|id| known[*id as usize]).max();
             let after = if shared[*s] { bindings.len() } else { ready.unwrap_or(0) };
+            let lines = quote!(#bound #(#places = #value;)*);
             stores[after].push(Statement { nodes: Vec::new(), sums: vec![*s], lines });
         }
         let mut stores = stores.into_iter();
@@ -208,52 +220,44 @@ impl<'a> Body<'a> {
             all.push(binding);
             all.extend(stores);
         }
-        all
+        Ok(all)
     }
 
     /// The value of a sum.
-    fn value(&self, sum: usize) -> String {
-        self.sum(&[], &self.function.program.sums[sum], "")
-    }
-
-    /// A sum between what is before and behind it.
-    fn sum(&self, before: &[&str], sum: &Sum, behind: &str) -> String {
-        /// About the length of a term.
-        const TERM: usize = 24;
-        let mut text = String::with_capacity((sum.len() + 1) * TERM);
-        before.iter().for_each(|part| text.push_str(part));
+    fn value(&self, sum: usize) -> Written<TokenStream> {
+        let sum: &Sum = &self.function.program.sums[sum];
         if sum.is_empty() {
-            text.push_str("0.0");
+            return Ok(quote!(0.0));
         }
+        let mut tokens = Vec::with_capacity(sum.iter().map(|t| 2 * t.factors.len() + 2).sum());
         // Positive terms first spares a negation.
         let first = sum.iter().position(|t| t.coefficient > 0.0).unwrap_or(0);
         let others = sum.iter().enumerate().filter(|(i, _)| *i != first).map(|(_, t)| t);
-        for (k, term) in sum.get(first).into_iter().chain(others).enumerate() {
-            text.push_str(match (k, term.coefficient < 0.0) {
-                (0, false) => "",
-                (0, true) => "-",
-                (_, false) => " + ",
-                (_, true) => " - ",
-            });
-            self.product(term, &mut text);
+        for term in sum.get(first).into_iter().chain(others) {
+            if term.coefficient < 0.0 {
+                tokens.push(sign('-'));
+            } else if !tokens.is_empty() {
+                tokens.push(sign('+'));
+            }
+            self.product(term, &mut tokens)?;
         }
-        text.push_str(behind);
-        text
+        Ok(TokenStream::from_iter(tokens))
     }
 
     /// A term without its sign.
-    fn product(&self, term: &Term, text: &mut String) {
-        let size = term.coefficient.abs();
-        let mut between = "";
-        if size != 1.0 || term.factors.is_empty() {
-            let _ = write!(text, "{size:?}");
-            between = " * ";
+    fn product(&self, term: &Term, tokens: &mut Vec<TokenTree>) -> Written<()> {
+        let mut begun = term.coefficient.abs() != 1.0 || term.factors.is_empty();
+        if begun {
+            tokens.push(size(term.coefficient)?.into());
         }
         for id in &term.factors {
-            text.push_str(between);
-            text.push_str(&self.names[*id as usize]);
-            between = " * ";
+            if begun {
+                tokens.push(sign('*'));
+            }
+            tokens.push(self.names[*id as usize].clone().into());
+            begun = true;
         }
+        Ok(())
     }
 
     /// Sums that are outputs in several places (A is symmetric): they are computed once.
@@ -265,37 +269,44 @@ impl<'a> Body<'a> {
         (0..count.len()).map(|s| count[s] > 1 && !simple(s)).collect()
     }
 
+    /// A sum that is several outputs, with a name.
+    fn bound(&self, sum: usize) -> Written<TokenStream> {
+        let (name, value) = (format_ident!("out{sum}"), self.value(sum)?);
+        Ok(quote!(let #name = #value;))
+    }
+
     /// The value of a sum that is an output.
-    fn output(&self, sum: usize, shared: &[bool]) -> String {
-        if shared[sum] { format!("out{sum}") } else { self.value(sum) }
+    fn output(&self, sum: usize, shared: &[bool]) -> Written<TokenStream> {
+        if shared[sum] { Ok(TokenTree::from(format_ident!("out{sum}")).into()) } else { self.value(sum) }
     }
 
     /// What a function for one state returns.
-    fn result(&self, out: &mut String) {
+    fn result(&self) -> Written<TokenStream> {
         let (kernel, program) = (self.function.kernel, &self.function.program);
         let shared = self.shared();
-        for s in (0..shared.len()).filter(|s| shared[*s]) {
-            line(out, &self.sum(&["let out", &s.to_string(), " = "], &program.sums[s], ";"), 1);
-        }
-        let value = |s: &usize| self.output(*s, &shared);
-        let list = |open: String, sums: &[usize]| Layout::list(open, sums.iter().map(value).map(Layout::Sum), "]");
-        let expression = |shape: Shape, label: String, sums: &[usize]| match shape {
-            Shape::Scalar => Layout::Sum(label + &value(&sums[0])),
-            Shape::Vector(_) => list(label + "[", sums),
+        let bound =
+            (0..shared.len()).filter(|s| shared[*s]).map(|s| self.bound(s)).collect::<Written<TokenStream>>()?;
+        let list = |sums: &[usize]| {
+            let values = sums.iter().map(|s| self.output(*s, &shared)).collect::<Written<Vec<_>>>()?;
+            Ok(quote!([#(#values),*]))
+        };
+        let expression = |shape: Shape, sums: &[usize]| match shape {
+            Shape::Scalar => self.output(sums[0], &shared),
+            Shape::Vector(_) => list(sums),
             Shape::Matrix(_, columns) => {
-                let rows = sums.chunks(columns.max(1)).map(|row| list("[".into(), row));
-                Layout::list(label + "[", rows, "]")
+                let rows = sums.chunks(columns.max(1)).map(list).collect::<Written<Vec<_>>>()?;
+                Ok(quote!([#(#rows),*]))
             }
         };
-        let values = kernel.outputs.iter().zip(&program.outputs);
-        let result = match kernel.outputs.as_slice() {
-            [one] => expression(one.shape, String::new(), &program.outputs[0]),
-            _ => {
-                let fields = values.map(|(o, sums)| expression(o.shape, format!("{}: ", o.name), sums));
-                Layout::list(format!("{} {{ ", self.function.struct_name()), fields, " }")
-            }
-        };
-        indent(out, 1);
-        result.write(out, 1);
+        if let [one] = kernel.outputs.as_slice() {
+            let value = expression(one.shape, &program.outputs[0])?;
+            return Ok(quote!(#bound #value));
+        }
+        let fields = kernel.outputs.iter().zip(&program.outputs).map(|(output, sums)| {
+            let (name, value) = (ident(output.name)?, expression(output.shape, sums)?);
+            Ok(quote!(#name: #value))
+        });
+        let (fields, name) = (fields.collect::<Written<Vec<_>>>()?, self.function.struct_name()?);
+        Ok(quote!(#bound #name { #(#fields),* }))
     }
 }

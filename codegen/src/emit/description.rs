@@ -1,155 +1,175 @@
 //! The mechanism's numbers as a static value of the runtime's types.
 
 use super::function::Function;
-use super::layout::Layout;
+use super::tokens::{Written, float, floats, option, whole};
 use crate::mechanism::{Actuated, Body, Mechanism, Member, Point, Spot, VirtualLeg, points};
 use crate::spec::{HalfSteps, Limits, Rotation};
+use proc_macro2::TokenStream;
+use quote::quote;
+use syn::Path;
 
 /// A `Description`; `lowest` tells which of the mechanism's points can be the lowest.
-pub fn description(m: &Mechanism, key: &str, lowest: &[usize], functions: &[Function], runtime: &str) -> Layout {
+pub fn description(
+    m: &Mechanism,
+    key: &str,
+    lowest: &[usize],
+    functions: &[Function],
+    runtime: &Path,
+) -> Written<TokenStream> {
     let rotation = match m.rotation {
-        Rotation::None => "None",
-        Rotation::Pitch => "Pitch",
-        Rotation::Roll => "Roll",
+        Rotation::None => quote!(None),
+        Rotation::Pitch => quote!(Pitch),
+        Rotation::Roll => quote!(Roll),
     };
     let half_steps = match m.half_steps {
-        HalfSteps::Mirrored => "Mirrored",
-        HalfSteps::Distinct => "Distinct",
+        HalfSteps::Mirrored => quote!(Mirrored),
+        HalfSteps::Distinct => quote!(Distinct),
     };
     let early = [0, 1].map(|leg| {
         let name = format!("early{}", leg + 1);
-        functions.iter().find(|f| f.kernel.name == name).map_or(0, |f| f.kernel.outputs[0].values.len())
+        whole(functions.iter().find(|f| f.kernel.name == name).map_or(0, |f| f.kernel.outputs[0].values.len()))
     });
-    Layout::record(
-        format!("{runtime}::Description"),
-        [
-            ("key", Layout::value(key)),
-            ("gait", Layout::value(&m.gait)),
-            ("robot", Layout::value(&m.robot)),
-            ("gravity", Layout::float(m.gravity)),
-            ("lateral", Layout::value(m.lateral)),
-            ("rotation", Layout::Word(format!("{runtime}::Rotation::{rotation}"))),
-            ("half_steps", Layout::Word(format!("{runtime}::HalfSteps::{half_steps}"))),
-            ("bodies", borrowed(m.bodies.iter().map(|b| body(b, runtime)))),
-            ("corners", borrowed(m.corners.iter().map(|s| spot(s, runtime)))),
-            ("joints", borrowed(m.joints.iter().map(|j| joint(j, runtime)))),
-            ("legs", Layout::list("[", m.legs.iter().map(|l| leg(l, runtime)), "]")),
-            ("unactuated", Layout::value(m.unactuated)),
-            ("polynomial_order", Layout::value(m.polynomial_order)),
-            ("early", Layout::value(early)),
-            ("points", Layout::list("&[", points(m).iter().map(|p| point(p, runtime)), "]")),
-            ("lowest", Layout::list("&[", lowest.iter().map(Layout::value), "]")),
-            ("limits", limits(&m.limits, runtime)),
-            ("operations", Layout::list("&[", functions.iter().map(|f| operations(f, runtime)), "]")),
-        ],
-    )
+    let (gait, robot, lateral, gravity) = (&m.gait, &m.robot, m.lateral, float(m.gravity)?);
+    let (bodies, joints) = (each(&m.bodies, |b| body(b, runtime))?, each(&m.joints, |j| joint(j, runtime))?);
+    let (legs, limits) = (each(&m.legs, |l| leg(l, runtime))?, limits(&m.limits, runtime)?);
+    let (unactuated, order) = (whole(m.unactuated), whole(m.polynomial_order));
+    let operations = functions.iter().map(|f| operations(f, runtime));
+    let corners = each(&m.corners, |s| spot(s, runtime))?;
+    let points = points(m).into_iter().map(|p| point(&p, runtime));
+    let lowest = lowest.iter().copied().map(whole);
+    Ok(quote! {
+        #runtime::Description {
+            key: #key,
+            gait: #gait,
+            robot: #robot,
+            gravity: #gravity,
+            lateral: #lateral,
+            rotation: #runtime::Rotation::#rotation,
+            half_steps: #runtime::HalfSteps::#half_steps,
+            bodies: std::borrow::Cow::Borrowed(&[#(#bodies),*]),
+            corners: std::borrow::Cow::Borrowed(&[#(#corners),*]),
+            joints: std::borrow::Cow::Borrowed(&[#(#joints),*]),
+            legs: [#(#legs),*],
+            unactuated: #unactuated,
+            polynomial_order: #order,
+            early: [#(#early),*],
+            points: &[#(#points),*],
+            lowest: &[#(#lowest),*],
+            limits: #limits,
+            operations: &[#(#operations),*],
+        }
+    })
 }
 
-/// A `Cow` of a slice.
-fn borrowed(items: impl Iterator<Item = Layout>) -> Layout {
-    Layout::list("std::borrow::Cow::Borrowed(&[", items, "])")
+/// What each of some things is in the code.
+pub fn each<T>(things: &[T], tokens: impl Fn(&T) -> Written<TokenStream>) -> Written<Vec<TokenStream>> {
+    things.iter().map(tokens).collect()
 }
 
-pub fn body(b: &Body, runtime: &str) -> Layout {
-    Layout::record(
-        format!("{runtime}::Body"),
-        [
-            ("name", Layout::value(&b.name)),
-            ("parent", Layout::value(b.parent)),
-            ("coordinate", Layout::value(b.coordinate)),
-            ("axis", Layout::value(b.axis.index())),
-            ("offset", Layout::floats(b.offset)),
-            ("mass", Layout::float(b.mass)),
-            ("com", Layout::floats(b.com)),
-            ("inertia", Layout::list("[", b.inertia.map(Layout::floats), "]")),
-        ],
-    )
+pub fn body(b: &Body, runtime: &Path) -> Written<TokenStream> {
+    let (name, parent, coordinate, axis) = (&b.name, option(b.parent), option(b.coordinate), whole(b.axis.index()));
+    let (offset, mass, com) = (floats(b.offset)?, float(b.mass)?, floats(b.com)?);
+    let inertia = b.inertia.into_iter().map(floats).collect::<Written<Vec<_>>>()?;
+    Ok(quote! {
+        #runtime::Body {
+            name: #name,
+            parent: #parent,
+            coordinate: #coordinate,
+            axis: #axis,
+            offset: #offset,
+            mass: #mass,
+            com: #com,
+            inertia: [#(#inertia),*],
+        }
+    })
 }
 
-fn joint(j: &Actuated, runtime: &str) -> Layout {
-    Layout::record(
-        format!("{runtime}::Joint"),
-        [
-            ("name", Layout::value(&j.name)),
-            ("range", Layout::floats(j.range)),
-            ("gear", Layout::float(j.gear)),
-            ("max_torque", Layout::float(j.max_torque)),
-            ("unloaded_speed", Layout::float(j.unloaded_speed)),
-            ("loaded_speed", Layout::float(j.loaded_speed)),
-            ("rotor_inertia", Layout::float(j.rotor_inertia)),
-        ],
-    )
+fn joint(j: &Actuated, runtime: &Path) -> Written<TokenStream> {
+    let (name, range, gear, max_torque) = (&j.name, floats(j.range)?, float(j.gear)?, float(j.max_torque)?);
+    let (unloaded, loaded, rotor) = (float(j.unloaded_speed)?, float(j.loaded_speed)?, float(j.rotor_inertia)?);
+    Ok(quote! {
+        #runtime::Joint {
+            name: #name,
+            range: #range,
+            gear: #gear,
+            max_torque: #max_torque,
+            unloaded_speed: #unloaded,
+            loaded_speed: #loaded,
+            rotor_inertia: #rotor,
+        }
+    })
 }
 
-fn leg(l: &VirtualLeg, runtime: &str) -> Layout {
-    Layout::record(
-        format!("{runtime}::Leg"),
-        [
-            ("members", borrowed(l.members.iter().map(|m| member(m, runtime)))),
-            ("first_joint", Layout::value(l.joints.start)),
-            ("end_joint", Layout::value(l.joints.end)),
-            ("foot_body", Layout::value(l.foot_body)),
-            ("foot", Layout::floats(l.foot)),
-        ],
-    )
+fn leg(l: &VirtualLeg, runtime: &Path) -> Written<TokenStream> {
+    let (members, foot) = (each(&l.members, |m| member(m, runtime))?, floats(l.foot)?);
+    let [first, end, foot_body] = [l.joints.start, l.joints.end, l.foot_body].map(whole);
+    Ok(quote! {
+        #runtime::Leg {
+            members: std::borrow::Cow::Borrowed(&[#(#members),*]),
+            first_joint: #first,
+            end_joint: #end,
+            foot_body: #foot_body,
+            foot: #foot,
+        }
+    })
 }
 
-fn member(m: &Member, runtime: &str) -> Layout {
-    Layout::record(
-        format!("{runtime}::Member"),
-        [
-            ("name", Layout::value(&m.name)),
-            ("bodies", borrowed(m.bodies.iter().map(|b| body(b, runtime)))),
-            ("joints", borrowed(m.joints.iter().map(Layout::value))),
-            ("foot", Layout::floats(m.foot)),
-            ("spots", borrowed(m.spots.iter().map(|s| spot(s, runtime)))),
-        ],
-    )
+fn member(m: &Member, runtime: &Path) -> Written<TokenStream> {
+    let (name, joints, foot) = (&m.name, &m.joints, floats(m.foot)?);
+    let bodies = each(&m.bodies, |b| body(b, runtime))?;
+    let spots = each(&m.spots, |s| spot(s, runtime))?;
+    Ok(quote! {
+        #runtime::Member {
+            name: #name,
+            bodies: std::borrow::Cow::Borrowed(&[#(#bodies),*]),
+            joints: std::borrow::Cow::Borrowed(&[#(#joints),*]),
+            foot: #foot,
+            spots: std::borrow::Cow::Borrowed(&[#(#spots),*]),
+        }
+    })
 }
 
-fn spot(s: &Spot, runtime: &str) -> Layout {
-    Layout::record(format!("{runtime}::Spot"), [("body", Layout::value(s.body)), ("at", Layout::floats(s.at))])
+fn spot(s: &Spot, runtime: &Path) -> Written<TokenStream> {
+    let (body, at) = (whole(s.body), floats(s.at)?);
+    Ok(quote!(#runtime::Spot { body: #body, at: #at }))
 }
 
-fn point(p: &Point, runtime: &str) -> Layout {
-    Layout::record(
-        format!("{runtime}::Point"),
-        [
-            ("name", Layout::value(&p.name)),
-            ("of", Layout::value(p.of)),
-            ("spot", Layout::value(p.spot)),
-            ("leg", Layout::value(p.leg)),
-            ("mirrored", Layout::value(p.mirrored)),
-        ],
-    )
+fn point(p: &Point, runtime: &Path) -> TokenStream {
+    let of = p.of.map(|(leg, member)| [leg, member].map(whole));
+    let of = of.map_or(quote!(None), |[leg, member]| quote!(Some((#leg, #member))));
+    let (name, spot, leg, mirrored) = (&p.name, whole(p.spot), whole(p.leg), p.mirrored);
+    quote!(#runtime::Point { name: #name, of: #of, spot: #spot, leg: #leg, mirrored: #mirrored })
 }
 
-fn limits(l: &Limits, runtime: &str) -> Layout {
-    Layout::record(
-        format!("{runtime}::Limits"),
-        [
-            ("friction", Layout::float(l.friction)),
-            ("min_vertical_force", Layout::float(l.min_vertical_force)),
-            ("swing_clearance", Layout::float(l.swing_clearance)),
-            ("half_step_duration", Layout::floats(l.half_step_duration)),
-            ("min_platform_height", Layout::float(l.min_platform_height)),
-            ("body_clearance", Layout::float(l.body_clearance)),
-            ("real_legs", Layout::value(false)),
-        ],
-    )
+fn limits(l: &Limits, runtime: &Path) -> Written<TokenStream> {
+    let (friction, force, clearance) = (float(l.friction)?, float(l.min_vertical_force)?, float(l.swing_clearance)?);
+    let (duration, height) = (floats(l.half_step_duration)?, float(l.min_platform_height)?);
+    let body_clearance = float(l.body_clearance)?;
+    Ok(quote! {
+        #runtime::Limits {
+            friction: #friction,
+            min_vertical_force: #force,
+            swing_clearance: #clearance,
+            half_step_duration: #duration,
+            min_platform_height: #height,
+            body_clearance: #body_clearance,
+            real_legs: false,
+        }
+    })
 }
 
-fn operations(f: &Function, runtime: &str) -> Layout {
-    let o = f.operations;
-    Layout::record(
-        format!("{runtime}::Operations"),
-        [
-            ("kernel", Layout::value(&f.kernel.name)),
-            ("flops", Layout::value(o.flops)),
-            ("divisions", Layout::value(o.divisions)),
-            ("sincos", Layout::value(o.sincos)),
-            ("derived", Layout::value(f.derived.flops)),
-            ("bytes", Layout::value(f.source.len())),
-        ],
-    )
+fn operations(f: &Function, runtime: &Path) -> TokenStream {
+    let (kernel, o) = (&f.kernel.name, f.operations);
+    let counts = [o.flops, o.divisions, o.sincos, f.derived.flops, f.source.len()];
+    let [flops, divisions, sincos, derived, bytes] = counts.map(whole);
+    quote! {
+        #runtime::Operations {
+            kernel: #kernel,
+            flops: #flops,
+            divisions: #divisions,
+            sincos: #sincos,
+            derived: #derived,
+            bytes: #bytes,
+        }
+    }
 }

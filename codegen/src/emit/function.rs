@@ -2,14 +2,15 @@
 
 use super::batch;
 use super::body;
-use super::layout::{Layout, indent, line};
-use crate::dynamics::{Kernel, Shape};
+use super::tokens::{Written, doc, ident, print, shape_type};
+use crate::dynamics::{Input, Kernel};
 use crate::expr::Ring;
 use crate::program::{Operations, Program, Search};
 use crate::spec::name::type_name;
 use crate::turns::in_turn;
+use proc_macro2::{Ident, TokenStream};
+use quote::quote;
 use std::cmp::Reverse;
-use std::fmt::Write;
 
 /// A kernel with its program, ready to be written.
 #[derive(Clone)]
@@ -25,9 +26,9 @@ pub struct Function<'a> {
 }
 
 /// A function for each kernel, in order.
-pub fn functions<'a>(ring: &'a Ring, kernels: &'a [Kernel]) -> Vec<Function<'a>> {
+pub fn functions<'a>(ring: &'a Ring, kernels: &'a [Kernel]) -> Written<Vec<Function<'a>>> {
     let make = |search: &mut Search, kernel| Function::new(ring, kernel, search);
-    in_turn(kernels, |kernel| Reverse(kernel.pairs()), Search::default, make)
+    in_turn(kernels, |kernel| Reverse(kernel.pairs()), Search::default, make).into_iter().collect()
 }
 
 /// `inverse_jacobian2` → (`inverse_jacobian`, true): leg kernels end in the leg's number.
@@ -37,71 +38,78 @@ pub fn base_name(name: &str) -> (&str, bool) {
 }
 
 impl Function<'_> {
-    pub fn new<'a>(ring: &'a Ring, kernel: &'a Kernel, search: &mut Search) -> Function<'a> {
+    pub fn new<'a>(ring: &'a Ring, kernel: &'a Kernel, search: &mut Search) -> Written<Function<'a>> {
         let derived = Program::as_derived(ring, kernel);
         let program = derived.factored(search);
         let (operations, derived) = (program.operations(), derived.operations());
         let mut function = Function { ring, kernel, program, operations, derived, source: String::new() };
-        function.source = function.written();
-        function
+        let tokens = function.tokens().map_err(|e| e.of(&format!("in the kernel `{}`", kernel.name)))?;
+        function.source = print(tokens)?;
+        Ok(function)
     }
 
     /// The type returned: a struct where there are several outputs.
-    fn return_type(&self) -> String {
+    fn return_type(&self) -> Written<TokenStream> {
         match self.kernel.outputs.as_slice() {
-            [one] => shape_type(one.shape, "f64"),
-            _ => self.struct_name(),
+            [one] => Ok(shape_type(one.shape, &quote!(f64))),
+            _ => self.struct_name().map(|name| quote!(#name)),
         }
     }
 
-    pub fn struct_name(&self) -> String {
-        type_name(base_name(&self.kernel.name).0)
+    pub fn struct_name(&self) -> Written<Ident> {
+        ident(&type_name(base_name(&self.kernel.name).0))
     }
 
-    /// The struct returned, if the kernel has several outputs: its name and source.
-    pub fn output_struct(&self) -> Option<(String, String)> {
+    /// The struct returned, if the kernel has several outputs: its name and its definition.
+    pub fn output_struct(&self) -> Written<Option<(Ident, TokenStream)>> {
         if self.kernel.outputs.len() < 2 {
-            return None;
+            return Ok(None);
         }
-        let name = self.struct_name();
-        let mut source = format!(
-            "/// Result of [`{}`] and, where there is one, its twin for the other leg.\n\
-             #[derive(Clone, Copy, Debug, PartialEq)]\npub struct {name}<T = f64> {{\n",
-            self.kernel.name
-        );
-        for o in &self.kernel.outputs {
-            let _ = writeln!(source, "    /// {}\n    pub {}: {},", o.doc, o.name, shape_type(o.shape, "T"));
-        }
-        Some((name, source + "}\n"))
+        let name = self.struct_name()?;
+        let text = format!("Result of [`{}`] and, where there is one, its twin for the other leg.", self.kernel.name);
+        let text = doc(&text);
+        let fields = self.kernel.outputs.iter().map(|output| {
+            let (text, name, ty) = (doc(output.doc), ident(output.name)?, shape_type(output.shape, &quote!(T)));
+            Ok(quote!(#text pub #name: #ty))
+        });
+        let fields = fields.collect::<Written<Vec<_>>>()?;
+        let definition = quote! {
+            #text
+            #[derive(Clone, Copy, Debug, PartialEq)]
+            pub struct #name<T = f64> {
+                #(#fields,)*
+            }
+        };
+        Ok(Some((name, definition)))
     }
 
-    fn written(&self) -> String {
-        let ops = self.operations;
-        let mut source = format!(
-            "/// {}\n///\n/// Operations: {} additions and multiplications, {} divisions, {} pairs of sine and cosine.\n#[inline]\n",
-            self.kernel.doc, ops.flops, ops.divisions, ops.sincos
-        );
-        let inputs = self.kernel.inputs.iter().map(|i| {
-            let ty = if i.scalar { "f64".into() } else { format!("&[f64; {}]", i.symbols.len()) };
-            Layout::Sum(format!("{}: {ty}", i.name))
+    /// The function itself, and the one for batches where it is wanted.
+    fn tokens(&self) -> Written<TokenStream> {
+        let Operations { flops, divisions, sincos } = self.operations;
+        let text = doc(&format!(
+            "{}\n\nOperations: {flops} additions and multiplications, {divisions} divisions, {sincos} pairs of sine and cosine.",
+            self.kernel.doc
+        ));
+        let inputs = self.kernel.inputs.iter().map(|input| {
+            let (name, ty) = (ident(input.name)?, parameter_type(input));
+            Ok(quote!(#name: #ty))
         });
-        let open = format!("pub fn {}(", self.kernel.name);
-        Layout::list(open, inputs, format!(") -> {} {{", self.return_type())).write(&mut source, 0);
-        body::write(self, &mut source);
-        line(&mut source, "}", 0);
-        indent(&mut source, 0);
-        if self.kernel.batched && self.kernel.outputs.len() > 1 {
-            source += &batch::source(self);
-        }
-        source
+        let (inputs, name) = (inputs.collect::<Written<Vec<_>>>()?, ident(&self.kernel.name)?);
+        let (result, body) = (self.return_type()?, body::of_state(self)?);
+        let is_batched = self.kernel.batched && self.kernel.outputs.len() > 1;
+        let batch = if is_batched { batch::tokens(self)? } else { TokenStream::new() };
+        Ok(quote! {
+            #text
+            #[inline]
+            pub fn #name(#(#inputs),*) -> #result {
+                #body
+            }
+            #batch
+        })
     }
 }
 
-/// An array type for a shape, of numbers or of lanes.
-pub fn shape_type(shape: Shape, number: &str) -> String {
-    match shape {
-        Shape::Scalar => number.into(),
-        Shape::Vector(n) => format!("[{number}; {n}]"),
-        Shape::Matrix(rows, columns) => format!("[[{number}; {columns}]; {rows}]"),
-    }
+fn parameter_type(input: &Input) -> TokenStream {
+    let numbers = shape_type(input.shape(), &quote!(f64));
+    if input.scalar { numbers } else { quote!(&#numbers) }
 }

@@ -1,7 +1,8 @@
 //! Rust source from programs: one documented function per kernel, one file per gait.
 //!
 //! The functions are straight lines of `let`s over named values: no allocation, no indexing, no
-//! branch.
+//! branch. All of it is tokens first (`tokens`): a name or a number that cannot be one ends there, and what they make is
+//! parsed before it is written. Lines that are no code, a header and `support/math.rs`, are texts.
 
 mod batch;
 mod body;
@@ -9,15 +10,18 @@ mod description;
 mod family;
 mod function;
 mod gait;
-mod layout;
 mod modules;
 mod scopes;
+mod specification;
+mod tokens;
 mod whole;
 
 pub use family::{families_source, family_file_name, family_source};
 pub use gait::gait_source;
-pub use modules::{file_name, registry_source};
+pub use modules::{MATH_FILE, file_name, registry_source};
+pub use specification::{SPECIFICATION_FILE, specification_source};
+pub use tokens::{Unwritable, Written};
 pub use whole::{whole_file_name, whole_module, whole_source};
 
-/// The pinned sine and cosine, as source: part of every generated module.
+/// The pinned sine and cosine, as source: beside every generated module.
 pub const MATH: &str = include_str!("../../support/math.rs");

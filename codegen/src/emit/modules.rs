@@ -1,8 +1,14 @@
 //! The registry of all gaits: a module for each, in those of their robots.
 
-use super::MATH;
+use super::gait::comment;
+use super::tokens::{Written, doc, ident, path, print};
 use super::whole::{whole_file_name, whole_module};
 use crate::spec::name::{module_name, type_name};
+use proc_macro2::{Ident, TokenStream};
+use quote::quote;
+
+/// Name of the generated file with the elementary functions.
+pub const MATH_FILE: &str = "math.rs";
 
 /// What the program calls a gait: `trot`, or `rabbit/walk` for one whose robot has a module.
 pub fn key(robot: &str, gait: &str) -> String {
@@ -15,33 +21,46 @@ pub fn file_name(robot: &str, gait: &str) -> String {
 }
 
 /// Source of the module that holds all gaits of a build; `wholes` tells how many whole robots each robot is.
+///
+/// # Errors
+/// If a name of it cannot be one in Rust.
 pub fn registry_source(
     robots: &[(&str, Vec<String>)],
     wholes: &[usize],
     runtime: Option<&str>,
     origin: &str,
-) -> String {
+) -> Written<String> {
     let whole = |robot: usize| {
-        (0..wholes[robot])
-            .map(|n| module(&whole_module(n), "The whole robot", &whole_file_name(robots[robot].0, n)))
-            .collect()
+        let file = |number| whole_file_name(robots[robot].0, number);
+        let modules = (0..wholes[robot]).map(|n| module(&whole_module(n), "The whole robot.", &file(n)));
+        modules.collect::<Written<TokenStream>>()
     };
-    let mut source = tree(robots, file_name, whole, origin);
+    let mut items = tree(robots, file_name, whole)?;
     if let Some(runtime) = runtime {
-        let all: Vec<String> = paths(robots).iter().map(|(module, name)| format!("&{module}::{name}")).collect();
-        let all = all.join(", ");
-        source += &format!("/// All gaits of this build.\npub static GAITS: &[&dyn {runtime}::Gait] = &[{all}];\n");
+        let runtime = path(runtime)?;
+        let gaits = places(robots)?.into_iter().map(|Place { module, ty }| quote!(&#module::#ty));
+        items.extend(quote! {
+            /// All gaits of this build.
+            pub static GAITS: &[&dyn #runtime::Gait] = &[#(#gaits),*];
+        });
     }
-    source
+    Ok(comment(origin) + &print(items)?)
 }
 
-/// The module and type of every gait.
-pub(super) fn paths(robots: &[(&str, Vec<String>)]) -> Vec<(String, String)> {
-    let of = |robot: &str, gait: &str| {
-        let inside = if robot.is_empty() { String::new() } else { format!("{robot}::") };
-        (inside + &module_name(gait), type_name(gait))
+/// Where a gait is in the code: the path of its module, and its type in there.
+pub(super) struct Place {
+    pub module: TokenStream,
+    pub ty: Ident,
+}
+
+/// The places of all gaits.
+pub(super) fn places(robots: &[(&str, Vec<String>)]) -> Written<Vec<Place>> {
+    let place = |robot: &str, gait: &str| {
+        let (module, ty) = (ident(&module_name(gait))?, ident(&type_name(gait))?);
+        let robot = if robot.is_empty() { None } else { Some(ident(robot)?) };
+        Ok(Place { module: robot.map_or(quote!(#module), |robot| quote!(#robot::#module)), ty })
     };
-    robots.iter().flat_map(|(robot, gaits)| gaits.iter().map(move |gait| of(robot, gait))).collect()
+    robots.iter().flat_map(|(robot, gaits)| gaits.iter().map(move |gait| place(robot, gait))).collect()
 }
 
 /// A module for each gait, in that of its robot with what `shared` has for the robot, and the one with the
@@ -49,30 +68,40 @@ pub(super) fn paths(robots: &[(&str, Vec<String>)]) -> Vec<(String, String)> {
 pub(super) fn tree(
     robots: &[(&str, Vec<String>)],
     file: fn(&str, &str) -> String,
-    shared: impl Fn(usize) -> String,
-    origin: &str,
-) -> String {
-    let mut source =
-        format!("// {origin}\n/// Elementary functions with pinned results.\npub mod math {{\n{MATH}\n}}\n");
+    shared: impl Fn(usize) -> Written<TokenStream>,
+) -> Written<TokenStream> {
+    let mut tree = module("math", "Elementary functions with pinned results.", MATH_FILE)?;
     for (k, (robot, gaits)) in robots.iter().enumerate() {
         let gait_module = |gait: &String| {
-            module(&module_name(gait), &format!("Generated dynamics of the {gait}"), &file(robot, gait))
+            module(&module_name(gait), &format!("Generated dynamics of the {gait}."), &file(robot, gait))
         };
-        let modules: String = gaits.iter().map(gait_module).collect();
-        let items = shared(k) + &modules;
+        let mut items = shared(k)?;
+        items.extend(gaits.iter().map(gait_module).collect::<Written<TokenStream>>()?);
         if robot.is_empty() {
-            source += &items;
-        } else {
-            source +=
-                &format!("/// Gaits of the robot `{robot}`.\npub mod {robot} {{\n    use super::math;\n{items}}}\n");
+            tree.extend(items);
+            continue;
         }
+        let (text, robot) = (doc(&format!("Gaits of the robot `{robot}`.")), ident(robot)?);
+        tree.extend(quote! {
+            #text
+            pub mod #robot {
+                use super::math;
+                #items
+            }
+        });
     }
-    source
+    Ok(tree)
 }
 
-fn module(name: &str, what: &str, file: &str) -> String {
-    format!(
-        "/// {what}.\n#[rustfmt::skip]\n#[allow(clippy::all, clippy::pedantic)]\n\
-         pub mod {name} {{\n    include!(concat!(env!(\"OUT_DIR\"), \"/{file}\"));\n}}\n"
-    )
+/// A module that is a generated file.
+fn module(name: &str, what: &str, file: &str) -> Written<TokenStream> {
+    let (name, what, file) = (ident(name)?, doc(what), format!("/{file}"));
+    Ok(quote! {
+        #what
+        #[rustfmt::skip]
+        #[allow(clippy::all, clippy::pedantic)]
+        pub mod #name {
+            include!(concat!(env!("OUT_DIR"), #file));
+        }
+    })
 }

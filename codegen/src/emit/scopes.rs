@@ -1,8 +1,9 @@
 //! Statements in scopes: long bodies are cut into nested blocks, because rustc's debug information does not survive
 //! thousands of bindings in one.
 
-use super::layout::{Layout, indent, line};
 use crate::program::{Id, Program};
+use proc_macro2::{Ident, TokenStream};
+use quote::quote;
 
 /// Statements per scope.
 const BLOCK: usize = 200;
@@ -11,49 +12,37 @@ const BLOCK: usize = 200;
 pub struct Statement {
     pub nodes: Vec<Id>,
     pub sums: Vec<usize>,
-    pub lines: Vec<String>,
+    pub lines: TokenStream,
 }
 
 /// What the statements are about.
 pub struct Scopes<'a> {
     pub program: &'a Program,
-    pub names: &'a [String],
+    pub names: &'a [Ident],
     /// Whether the outputs are evaluated behind all statements.
     pub outputs_follow: bool,
-    /// Indents of their lines.
-    pub depth: usize,
 }
 
 impl Scopes<'_> {
-    /// Writes them, in scopes of limited size that hand on what is needed later.
-    pub fn write(&self, statements: &[Statement], out: &mut String) {
-        let depth = self.depth;
+    /// The statements, in scopes of limited size that hand on what is needed later.
+    pub fn tokens(&self, statements: Vec<Statement>) -> TokenStream {
         if statements.len() <= BLOCK {
-            return statements.iter().flat_map(|s| &s.lines).for_each(|text| line(out, text, depth));
+            return statements.into_iter().map(|s| s.lines).collect();
         }
-        let last_use = self.last_uses(statements);
-        for (number, block) in statements.chunks(BLOCK).enumerate() {
+        let last_use = self.last_uses(&statements);
+        let scope = |(number, block): (usize, &[Statement])| {
             let end = (number + 1) * BLOCK;
             let kept = block.iter().flat_map(|s| &s.nodes).filter(|id| last_use[**id as usize] >= end);
-            let kept: Vec<&str> = kept.map(|id| self.names[*id as usize].as_str()).collect();
-            let list =
-                |open: &str, close: &str| Layout::list(open, kept.iter().map(|k| Layout::Sum((*k).into())), close);
-            indent(out, depth);
+            let kept: Vec<&Ident> = kept.map(|id| &self.names[*id as usize]).collect();
+            let lines = block.iter().map(|s| &s.lines);
             // What has only outputs to store hands nothing on.
             if kept.is_empty() {
-                out.push('{');
+                quote!({ #(#lines)* })
             } else {
-                list("let [", "] = {").write(out, depth);
+                quote!(let [#(#kept),*] = { #(#lines)* [#(#kept),*] };)
             }
-            block.iter().flat_map(|s| &s.lines).for_each(|text| line(out, text, depth + 1));
-            if kept.is_empty() {
-                line(out, "}", depth);
-                continue;
-            }
-            indent(out, depth + 1);
-            list("[", "]").write(out, depth + 1);
-            line(out, "};", depth);
-        }
+        };
+        statements.chunks(BLOCK).enumerate().map(scope).collect()
     }
 
     /// For each node the last statement that uses it; the largest number where an output does that follows.

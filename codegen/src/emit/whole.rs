@@ -1,25 +1,30 @@
 //! The module of a whole robot, which its gaits share.
 
-use super::description::body;
+use super::description::{body, each};
 use super::function::{Function, functions};
-use super::gait::{constant, getter, header, items, methods};
-use super::layout::Layout;
+use super::gait::{header, items, methods};
 use super::modules::key;
+use super::tokens::{Written, doc, float, floats, path, print, whole as number};
 use crate::dynamics::whole_kernels;
 use crate::mechanism::{Whole, WholeJoint, WholeLeg};
 use crate::spec::name::WHOLE;
+use proc_macro2::TokenStream;
+use quote::quote;
+use syn::Path;
 
 /// Source of the module of a robot. `runtime` is the path of the module with the `Whole` trait; without it there
 /// are functions only.
-pub fn whole_source(whole: &Whole, runtime: Option<&str>, origin: &str) -> String {
+///
+/// # Errors
+/// If a name or a number of it cannot be one in Rust.
+pub fn whole_source(whole: &Whole, runtime: Option<&str>, origin: &str) -> Written<String> {
     let (ring, kernels) = whole_kernels(whole);
-    let functions = functions(&ring, &kernels);
-    let mut source = header(origin);
-    source += &items(&functions);
+    let functions = functions(&ring, &kernels)?;
+    let mut source = header(origin)? + &items(&functions)?;
     if let Some(runtime) = runtime {
-        implementation(whole, &functions, runtime, &mut source);
+        source += &print(implementation(whole, &functions, &path(runtime)?)?)?;
     }
-    source
+    Ok(source)
 }
 
 /// Name of the module with the `number`-th way in which the gaits of a robot lock its joints.
@@ -32,40 +37,44 @@ pub fn whole_file_name(robot: &str, number: usize) -> String {
     key(robot, &format!("{}.rs", whole_module(number)))
 }
 
-fn implementation(whole: &Whole, functions: &[Function], runtime: &str, out: &mut String) {
-    *out +=
-        &format!("/// The whole robot `{}`.\n#[derive(Clone, Copy, Debug, Default)]\npub struct Whole;\n", whole.robot);
-    let ty = format!("{runtime}::whole::Description");
-    let numbers = Layout::record(
-        ty.clone(),
-        [
-            ("robot", Layout::value(&whole.robot)),
-            ("gravity", Layout::float(whole.gravity)),
-            ("bodies", Layout::list("&[", whole.bodies.iter().map(|b| body(b, runtime)), "]")),
-            ("joints", Layout::list("&[", whole.joints.iter().map(|j| joint(j, runtime)), "]")),
-            ("legs", Layout::list("&[", whole.legs.iter().map(|l| leg(l, runtime)), "]")),
-        ],
-    );
-    constant("What the robot is made of, in numbers.", "DESCRIPTION", &ty, numbers, out);
-    *out += &format!("impl {runtime}::whole::Whole for Whole {{");
-    getter("description", &format!("&'static {ty}"), Layout::Word("&DESCRIPTION".into()), out);
-    methods(functions, out);
-    *out += "\n}\n";
+fn implementation(whole: &Whole, functions: &[Function], runtime: &Path) -> Written<TokenStream> {
+    let (text, robot, gravity) =
+        (doc(&format!("The whole robot `{}`.", whole.robot)), &whole.robot, float(whole.gravity)?);
+    let bodies = each(&whole.bodies, |b| body(b, runtime))?;
+    let joints = each(&whole.joints, |j| joint(j, runtime))?;
+    let legs = each(&whole.legs, |l| leg(l, runtime))?;
+    let methods = methods(functions)?;
+    Ok(quote! {
+        #text
+        #[derive(Clone, Copy, Debug, Default)]
+        pub struct Whole;
+
+        /// What the robot is made of, in numbers.
+        pub static DESCRIPTION: #runtime::whole::Description = #runtime::whole::Description {
+            robot: #robot,
+            gravity: #gravity,
+            bodies: &[#(#bodies),*],
+            joints: &[#(#joints),*],
+            legs: &[#(#legs),*],
+        };
+
+        impl #runtime::whole::Whole for Whole {
+            fn description(&self) -> &'static #runtime::whole::Description {
+                &DESCRIPTION
+            }
+
+            #methods
+        }
+    })
 }
 
-fn joint(j: &WholeJoint, runtime: &str) -> Layout {
-    let fields = [("name", Layout::value(&j.name)), ("rotor_inertia", Layout::float(j.rotor_inertia))];
-    Layout::record(format!("{runtime}::whole::Joint"), fields)
+fn joint(j: &WholeJoint, runtime: &Path) -> Written<TokenStream> {
+    let (name, rotor_inertia) = (&j.name, float(j.rotor_inertia)?);
+    Ok(quote!(#runtime::whole::Joint { name: #name, rotor_inertia: #rotor_inertia }))
 }
 
-fn leg(l: &WholeLeg, runtime: &str) -> Layout {
-    Layout::record(
-        format!("{runtime}::whole::Leg"),
-        [
-            ("name", Layout::value(&l.name)),
-            ("joints", Layout::value(&l.joints)),
-            ("foot_body", Layout::value(l.foot_body)),
-            ("foot", Layout::floats(l.foot)),
-        ],
-    )
+fn leg(l: &WholeLeg, runtime: &Path) -> Written<TokenStream> {
+    let [first, end, foot_body] = [l.joints.start, l.joints.end, l.foot_body].map(number);
+    let (name, foot) = (&l.name, floats(l.foot)?);
+    Ok(quote!(#runtime::whole::Leg { name: #name, joints: #first..#end, foot_body: #foot_body, foot: #foot }))
 }
