@@ -5,12 +5,12 @@
 
 use super::body;
 use super::function::Function;
+use super::lines::print_function;
 use super::tokens::{Written, doc, ident, shape_type};
-use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 /// `kernel_batch` of a kernel with several outputs, with an array of lanes for every number.
-pub fn tokens(function: &Function) -> Written<TokenStream> {
+pub fn source(function: &Function) -> Written<String> {
     let single = ident(&function.kernel.name)?;
     let doc = doc(&format!("[`{single}`] of `N` states, with the same bits. Vectors and matrices are of lanes."));
     let (batch, result) = (format_ident!("{single}_batch"), function.struct_name()?);
@@ -21,13 +21,10 @@ pub fn tokens(function: &Function) -> Written<TokenStream> {
     });
     let inputs = inputs.collect::<Written<Vec<_>>>()?;
     let body = body::of_lane(function)?;
-    Ok(quote! {
+    let signature = quote! {
         #doc
         #[inline]
-        pub fn #batch<const N: usize>(#(#inputs,)* out: &mut #result<#lanes>) {
-            for lane in 0..N {
-                #body
-            }
-        }
-    })
+        pub fn #batch<const N: usize>(#(#inputs,)* out: &mut #result<#lanes>)
+    };
+    print_function(&signature, quote!(for lane in 0..N { #body }))
 }

@@ -2,7 +2,8 @@
 
 use super::batch;
 use super::body;
-use super::tokens::{Written, doc, ident, print, shape_type};
+use super::lines::print_function;
+use super::tokens::{Written, doc, ident, shape_type};
 use crate::dynamics::{Input, Kernel};
 use crate::expr::Ring;
 use crate::program::{Operations, Program, Search};
@@ -43,8 +44,7 @@ impl Function<'_> {
         let program = derived.factored(search);
         let (operations, derived) = (program.operations(), derived.operations());
         let mut function = Function { ring, kernel, program, operations, derived, source: String::new() };
-        let tokens = function.tokens().map_err(|e| e.of(&format!("in the kernel `{}`", kernel.name)))?;
-        function.source = print(tokens)?;
+        function.source = function.written().map_err(|e| e.of(&format!("in the kernel `{}`", kernel.name)))?;
         Ok(function)
     }
 
@@ -84,7 +84,7 @@ impl Function<'_> {
     }
 
     /// The function itself, and the one for batches where it is wanted.
-    fn tokens(&self) -> Written<TokenStream> {
+    fn written(&self) -> Written<String> {
         let Operations { flops, divisions, sincos } = self.operations;
         let text = doc(&format!(
             "{}\n\nOperations: {flops} additions and multiplications, {divisions} divisions, {sincos} pairs of sine and cosine.",
@@ -96,16 +96,14 @@ impl Function<'_> {
         });
         let (inputs, name) = (inputs.collect::<Written<Vec<_>>>()?, ident(&self.kernel.name)?);
         let (result, body) = (self.return_type()?, body::of_state(self)?);
-        let is_batched = self.kernel.batched && self.kernel.outputs.len() > 1;
-        let batch = if is_batched { batch::tokens(self)? } else { TokenStream::new() };
-        Ok(quote! {
+        let signature = quote! {
             #text
             #[inline]
-            pub fn #name(#(#inputs),*) -> #result {
-                #body
-            }
-            #batch
-        })
+            pub fn #name(#(#inputs),*) -> #result
+        };
+        let single = print_function(&signature, body)?;
+        let is_batched = self.kernel.batched && self.kernel.outputs.len() > 1;
+        Ok(if is_batched { single + &batch::source(self)? } else { single })
     }
 }
 

@@ -1,8 +1,9 @@
 //! Rust source from programs: one documented function per kernel, one file per gait.
 //!
 //! The functions are straight lines of `let`s over named values: no allocation, no indexing, no
-//! branch. All of it is tokens first (`tokens`): a name or a number that cannot be one ends there, and what they make is
-//! parsed before it is written. Lines that are no code, a header and `support/math.rs`, are texts.
+//! branch. All of it is tokens first (`tokens`): a name or a number that cannot be one ends there. Items are parsed
+//! before they are written, bodies written line by line (`lines`). What is no code, a header, is text, and so is
+//! `support/math.rs`.
 
 mod batch;
 mod body;
@@ -10,6 +11,7 @@ mod description;
 mod family;
 mod function;
 mod gait;
+mod lines;
 mod modules;
 mod scopes;
 mod specification;
