@@ -1,3 +1,3 @@
 fn main() {
-    piaffe_codegen::Config::new("model-spec").runtime("crate::model").compile();
+    piaffe_codegen::Config::new("model-spec").runtime("piaffe_model").compile();
 }

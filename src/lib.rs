@@ -1,42 +1,28 @@
 //! Optimal periodic gaits of legged robots, from a declarative description, with a receipt for each.
+//!
+//! This package holds the robots of `model-spec/`: its build derives their dynamics. Everything else comes from crates that
+//! know no robot, so that an edit of a robot compiles its dynamics and nothing more.
 
 #![forbid(unsafe_code)]
 
-pub mod altered;
-pub mod audit;
-pub mod certificate;
-pub mod constraints;
-pub mod cost;
-pub mod cycle;
-mod examine;
-pub mod export;
-pub mod finite;
-pub mod four_legs;
-pub mod import;
-pub mod instant;
-mod lgl;
-pub mod model;
-pub mod motion;
-pub mod number;
-pub mod optimality;
-pub mod origin;
-pub mod overview;
-mod polynomial;
-pub mod readback;
-pub mod report;
-pub mod result;
-pub mod search;
-pub mod sensitivity;
-pub mod sqp;
-pub mod stability;
-pub mod stance;
-pub mod standing;
-pub mod states;
-pub mod trajectory;
-pub mod units;
-pub mod verdict;
-pub mod verify;
-pub mod walk;
+#[cfg(feature = "cli")]
+pub use piaffe_cli as cli;
+#[cfg(feature = "export")]
+pub use piaffe_export as export;
+#[cfg(feature = "import")]
+pub use piaffe_import as import;
+pub use piaffe_model as model;
+pub use piaffe_model::{motion, units};
+pub use piaffe_number as number;
+pub use piaffe_optimizer::{
+    altered, audit, constraints, cost, cycle, finite, four_legs, instant, optimality, origin, readback, result, search,
+    sensitivity, stability, stance, states, trajectory, verdict, walk,
+};
+#[cfg(feature = "report")]
+pub use piaffe_report as report;
+pub use piaffe_sqp as sqp;
+pub use piaffe_verify as verify;
+pub use piaffe_verify::certificate;
 
 /// The programs in the book are run as tests.
 #[cfg(doctest)]
@@ -47,3 +33,12 @@ mod book {}
 pub mod gaits {
     include!(concat!(env!("OUT_DIR"), "/gaits.rs"));
 }
+
+mod specification {
+    include!(concat!(env!("OUT_DIR"), "/specification.rs"));
+}
+
+/// The gaits of this build and the files that they come from.
+#[cfg(feature = "cli")]
+pub const BUILT: cli::Build =
+    cli::Build { gaits: gaits::GAITS, folder: specification::FOLDER, files: specification::FILES };

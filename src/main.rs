@@ -1,11 +1,9 @@
-//! The command line. Everything that prints is below here.
+//! The command line, for the robots of this build.
 
 #![forbid(unsafe_code)]
-
-mod cli;
 
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    cli::run()
+    piaffe_cli::run(piaffe::BUILT)
 }

@@ -1,0 +1,371 @@
+//! `piaffe`: what a person types, and what comes back. Everything that prints is below here.
+
+#![forbid(unsafe_code)]
+
+mod built;
+mod check;
+mod digits;
+mod document;
+mod dynamics;
+mod export;
+mod harmless;
+mod import;
+mod input;
+mod journal;
+mod lift;
+mod main_job;
+mod manual;
+mod model;
+mod optimize;
+mod output;
+mod report;
+mod summary;
+mod sweep;
+mod verify;
+mod whole;
+
+pub use built::Build;
+use clap::builder::PossibleValuesParser;
+use clap::error::ErrorKind;
+use clap::{CommandFactory, Parser, Subcommand};
+use piaffe_model::Gait;
+use piaffe_model::motion::Criterion;
+use piaffe_optimizer::search::local::Task;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Exit code of a run that ended, but without an optimum.
+const NO_OPTIMUM: u8 = 3;
+/// Exit code where not everything that results state was confirmed.
+const NOT_CONFIRMED: u8 = 4;
+
+#[derive(Parser)]
+#[command(
+    name = "piaffe",
+    version,
+    about = "Optimal gaits of a legged robot, each with a receipt",
+    long_about = "Optimal periodic gaits of the robots in model-spec/, each with a receipt.\n\n\
+                  Without a command: finds the optimum of every gait and criterion at 0.6 m/s, prints them\n\
+                  beside the published values and writes the results to a folder.",
+    after_help = "Examples:\n  \
+                  piaffe                                             the main job; open results/index.html\n  \
+                  piaffe optimize trot --speed 0.6 --json trot.json  one optimum\n  \
+                  piaffe report trot.json --out trot                 a page that shows it\n  \
+                  piaffe export trot.json --format csv               its numbers over time\n  \
+                  piaffe verify trot.json                            what it states, derived anew\n  \
+                  piaffe sweep --speeds 0.2..1.2:0.1 --out sweep     many speeds\n\n\
+                  Exit codes: 0 success, 1 something failed, 2 wrong usage, 3 no optimum (infeasible or not converged),\n\
+                  4 a result was not confirmed.\n\
+                  NO_COLOR=1 turns colours off. Files are written whole or not at all, also when the program is interrupted."
+)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+    /// Folder for the results of the main job.
+    #[arg(long, default_value = "results", value_name = "DIR")]
+    out: PathBuf,
+    /// Say nothing but errors, and what was asked for with `-`.
+    #[arg(long, short, global = true)]
+    quiet: bool,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Say what a build would say of a robot's folder, at once, and draw the robot as it stands.
+    #[command(after_help = "Example:\n  piaffe check model-spec/a1 --svg a1.svg")]
+    Check {
+        /// The folder with robot.toml and gaits/.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+        /// Draw the robot, standing, from its right and from behind.
+        #[arg(long, value_name = "FILE")]
+        svg: Option<PathBuf>,
+    },
+    /// Evaluate the generated dynamics at given states.
+    #[command(
+        after_help = "Example:\n  echo '{\"states\":[{\"X\":[0,0.28,0.4,-0.8,0.1,-0.5],\"Xdot\":[0,0,1,0,0,0]}]}' | piaffe dynamics trot -"
+    )]
+    Dynamics {
+        #[arg(value_parser = gait_names())]
+        gait: String,
+        /// JSON: {"states": [{"X": […], "Xdot": […], "Xddot": […], "Gamma": […]}]}; `-` reads standard input.
+        #[arg(default_value = "-", value_name = "FILE|-")]
+        file: PathBuf,
+    },
+    /// Show what was generated for a gait: coordinates, virtual legs, masses, kernels; or its equations.
+    #[command(after_help = "Example:\n  piaffe model trot --latex > trot.tex && pdflatex trot.tex")]
+    Model {
+        #[arg(value_parser = gait_names())]
+        gait: String,
+        /// The closed forms with the names of the robot's parameters, as a LaTeX document.
+        #[arg(long, conflicts_with = "json")]
+        latex: bool,
+        /// Write what was generated as JSON; `-` is standard output.
+        #[arg(long, value_name = "FILE|-")]
+        json: Option<String>,
+    },
+    /// Write a specification from a URDF or MJCF: robot.toml and gaits to begin with.
+    ///
+    /// What is written builds, or everything that is in the way is said, each with what to do. Says what it took, what it
+    /// assumed and what it dropped. Legs are chains of revolute joints that can reach the ground.
+    #[command(
+        after_help = "Examples:\n  piaffe import a1.urdf --out model-spec/a1\n  piaffe import dog.xml --velocity 20 --lock 'arm_*' --lock tail=0.3"
+    )]
+    Import(import::Arguments),
+    /// Find the optimal periodic motion of a gait at a mean speed.
+    #[command(after_help = "Example:\n  piaffe optimize trot --criterion energy --speed 0.6 --json trot.json")]
+    Optimize {
+        #[arg(value_parser = gait_names())]
+        gait: String,
+        /// What to minimize per metre: the work of the actuators or the squares of their torques.
+        #[arg(long, value_parser = criterion_names(), default_value = "energy")]
+        criterion: String,
+        /// Mean forward speed, m/s.
+        #[arg(long, value_parser = speed)]
+        speed: f64,
+        /// Of the random starts.
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+        /// Impose contact, torque and speed limits at each real leg, not only at the virtual ones.
+        #[arg(long)]
+        real_legs: bool,
+        /// Number of starts, a default walk and random ones; if it is not given, as many as the optima found let expect others.
+        #[arg(long, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+        starts: Option<u32>,
+        /// Write the whole result as JSON; `-` is standard output.
+        #[arg(long, value_name = "FILE|-")]
+        json: Option<String>,
+    },
+    /// Write a result for other software: tables, arrays, polynomials, robot models.
+    #[command(
+        after_help = "Examples:\n  piaffe export results/trot-energy.json --format csv --rate 1000 --out trot.csv\n  piaffe export results/trot-energy.json --format mjcf --out quadruped.xml"
+    )]
+    Export {
+        /// A result as JSON; `-` reads standard input.
+        #[arg(value_name = "FILE|-")]
+        result: PathBuf,
+        #[arg(long, value_enum)]
+        format: export::Format,
+        /// Moments per second in csv and npz.
+        #[arg(long, default_value_t = 1000.0, value_parser = rate, value_name = "HZ")]
+        rate: f64,
+        /// `-` is standard output.
+        #[arg(long, default_value = "-", value_name = "FILE|-")]
+        out: String,
+    },
+    /// Write the motion of a result for the real legs: platform, joints, torques and the reaction on every foot.
+    ///
+    /// The shares of the feet are those that leave most room within the limits of each.
+    #[command(after_help = "Example:\n  piaffe lift results/amble-energy.json --rate 500 --out amble.csv")]
+    Lift {
+        /// A result as JSON; `-` reads standard input.
+        #[arg(value_name = "FILE|-")]
+        result: PathBuf,
+        /// Moments per second.
+        #[arg(long, default_value_t = 1000.0, value_parser = rate, value_name = "HZ")]
+        rate: f64,
+        #[arg(long, value_enum, default_value = "csv")]
+        format: lift::Format,
+        /// `-` is standard output.
+        #[arg(long, default_value = "-", value_name = "FILE|-")]
+        out: String,
+    },
+    /// Derive anew what results state, from the specification and the variables of their motions alone.
+    ///
+    /// Says of every entry whether it was confirmed, what it should be instead, or why it could not be checked. How a
+    /// motion was found (other optima, times, the search's settings) cannot be seen from it and is passed over. What a sweep
+    /// says of its results as a whole must follow from the results beside it, but for what ended a gait.
+    #[command(
+        after_help = "Examples:\n  piaffe verify results/*.json\n  piaffe verify trot.json --json -\n  piaffe verify sweep/*.json\n\nThe exit code is 0 only if everything was confirmed."
+    )]
+    Verify {
+        /// Results as JSON, overviews of sweeps (`sweep.json`), or folders of them; `-` reads standard input.
+        #[arg(required = true, value_name = "FILE|DIR|-")]
+        results: Vec<PathBuf>,
+        /// Write all verdicts as JSON; `-` is standard output.
+        #[arg(long, value_name = "FILE|-")]
+        json: Option<String>,
+    },
+    /// Show results: one page with the walks, all figures, and the receipts in words.
+    ///
+    /// The page needs neither network nor other files. Every figure is also written as SVG and PDF.
+    #[command(
+        after_help = "Examples:\n  piaffe report results/trot-energy.json --out trot\n  piaffe report sweep --out atlas"
+    )]
+    Report {
+        /// Results as JSON, or the folder of a sweep; `-` reads standard input.
+        #[arg(required = true, value_name = "FILE|DIR|-")]
+        results: Vec<PathBuf>,
+        /// Of results over many speeds, show in detail the walks at the speed nearest to this one, m/s.
+        #[arg(long, value_parser = speed, value_name = "SPEED")]
+        detail: Option<f64>,
+        /// Folder for the report.
+        #[arg(long, default_value = "report", value_name = "DIR")]
+        out: PathBuf,
+    },
+    /// Find the optima of gaits over a range of speeds, their greatest speeds and where they overtake each other.
+    ///
+    /// Every point is written as it is found; a sweep that was interrupted goes on where it stopped.
+    #[command(
+        after_help = "Example:\n  piaffe sweep --gait trot --gait amble --criterion all --speeds 0.1..1.6:0.1 --out sweep"
+    )]
+    Sweep {
+        /// May be given several times; all gaits of the first robot if it is not given.
+        #[arg(long, value_parser = gait_names())]
+        gait: Vec<String>,
+        /// energy, torque or all; may be given several times.
+        #[arg(long, value_parser = PossibleValuesParser::new(["energy", "torque", "all"]), default_value = "all")]
+        criterion: Vec<String>,
+        /// FROM..TO:STEP or a list, m/s.
+        #[arg(long, value_parser = sweep::parse_speeds, default_value = "0.1..1.6:0.1")]
+        speeds: std::vec::Vec<f64>,
+        /// Impose contact, torque and speed limits at each real leg, not only at the virtual ones.
+        #[arg(long)]
+        real_legs: bool,
+        /// Folder for the results.
+        #[arg(long = "out", value_name = "DIR", default_value = "sweep")]
+        folder: PathBuf,
+        /// Starts at every speed, besides those from the neighbours; if it is not given, as for `optimize`.
+        #[arg(long, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+        starts: Option<u32>,
+        /// Of the random starts.
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+    },
+    /// Write the completions of a shell to standard output.
+    #[command(after_help = "Example:\n  piaffe completions bash > ~/.local/share/bash-completion/completions/piaffe")]
+    Completions { shell: clap_complete::Shell },
+    /// Write the manual pages, one per command.
+    #[command(after_help = "Example:\n  piaffe manual --out ~/.local/share/man/man1 && man piaffe")]
+    Manual {
+        /// Folder for the pages.
+        #[arg(long, default_value = ".", value_name = "DIR")]
+        out: PathBuf,
+    },
+}
+
+impl Arguments {
+    /// Of what answers for a robot.
+    fn say_what_was_built(&self) {
+        let of = |gait: &str| built::note_of(&[by_name(gait)]);
+        match &self.command {
+            None => built::note_of(&first_robot().collect::<Vec<_>>()),
+            Some(Command::Dynamics { gait, .. } | Command::Model { gait, .. } | Command::Optimize { gait, .. }) => {
+                of(gait)
+            }
+            Some(Command::Sweep { gait, .. }) if gait.is_empty() => built::note_of(&first_robot().collect::<Vec<_>>()),
+            Some(Command::Sweep { gait, .. }) => built::note_of(&gait.iter().map(|g| by_name(g)).collect::<Vec<_>>()),
+            Some(Command::Verify { .. } | Command::Report { .. } | Command::Export { .. } | Command::Lift { .. }) => {
+                built::note_of_all()
+            }
+            Some(
+                Command::Import { .. } | Command::Check { .. } | Command::Completions { .. } | Command::Manual { .. },
+            ) => {}
+        }
+    }
+}
+
+/// The command line itself, for whoever describes it.
+fn command() -> clap::Command {
+    Arguments::command()
+}
+
+/// Runs the program for the robots of `build`.
+pub fn run(build: Build) -> ExitCode {
+    built::set(build);
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            let _ = error.print();
+            if error.kind() == ErrorKind::InvalidValue {
+                built::note_of_all();
+            }
+            return ExitCode::from(error.exit_code() as u8);
+        }
+    };
+    if arguments.quiet {
+        output::be_quiet();
+    }
+    arguments.say_what_was_built();
+    let unsuccessful =
+        if matches!(arguments.command, Some(Command::Verify { .. })) { NOT_CONFIRMED } else { NO_OPTIMUM };
+    let outcome = match arguments.command {
+        None => main_job::run(&arguments.out),
+        Some(Command::Check { folder, svg }) => check::run(&folder, svg.as_deref()),
+        Some(Command::Dynamics { gait, file }) => dynamics::run(by_name(&gait), &file),
+        Some(Command::Model { gait, latex, json }) => model::run(by_name(&gait), latex, json.as_deref()),
+        Some(Command::Import(arguments)) => import::run(arguments),
+        Some(Command::Optimize { gait, criterion, speed, seed, real_legs, starts, json }) => {
+            let settings = piaffe_optimizer::search::multi_start::Settings { starts: starts.map(|n| n as usize), seed };
+            let task = Task { gait: by_name(&gait), criterion: criterion_by_name(&criterion), speed };
+            optimize::run(task, real_legs, &settings, json.as_deref())
+        }
+        Some(Command::Completions { shell }) => manual::completions(shell),
+        Some(Command::Manual { out }) => manual::pages(&out),
+        Some(Command::Export { result, format, rate, out }) => export::run(&result, format, rate, &out),
+        Some(Command::Lift { result, rate, format, out }) => lift::run(&result, format, rate, &out),
+        Some(Command::Verify { results, json }) => verify::run(&results, json.as_deref()),
+        Some(Command::Report { results, detail, out }) => report::run(&results, detail, &out),
+        Some(Command::Sweep { gait, criterion, speeds, real_legs, folder, starts, seed }) => {
+            let settings = piaffe_optimizer::search::multi_start::Settings { starts: starts.map(|n| n as usize), seed };
+            let gaits: Vec<_> =
+                if gait.is_empty() { first_robot().collect() } else { gait.iter().map(|g| by_name(g)).collect() };
+            let wanted = |c: &Criterion| criterion.iter().any(|w| w == "all" || w == c.name());
+            let criteria: Vec<Criterion> = Criterion::ALL.into_iter().filter(wanted).collect();
+            sweep::run(&gaits, real_legs, &criteria, &speeds, &folder, &settings)
+        }
+    };
+    // A full disk is a failure, also where only words went there.
+    let outcome = outcome.and_then(|good| match output::lost() {
+        Some(error) => Err(anyhow::anyhow!("cannot write to standard output: {error}")),
+        None => Ok(good),
+    });
+    match outcome {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(unsuccessful),
+        Err(error) => {
+            output::error(&error);
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn gait_names() -> PossibleValuesParser {
+    PossibleValuesParser::new(built::gaits().iter().map(|g| g.description().key))
+}
+
+/// The gaits of the robot that needs no name.
+fn first_robot() -> impl Iterator<Item = &'static dyn Gait> {
+    built::gaits().iter().copied().filter(|g| g.description().is_of_first_robot())
+}
+
+/// The gait of that name; the parser has admitted no other names.
+fn by_name(name: &str) -> &'static dyn Gait {
+    built::gaits().iter().copied().find(|g| g.description().key == name).unwrap_or(built::gaits()[0])
+}
+
+fn criterion_names() -> PossibleValuesParser {
+    PossibleValuesParser::new(Criterion::ALL.map(Criterion::name))
+}
+
+/// The criterion of that name; the parser has admitted no other names.
+fn criterion_by_name(name: &str) -> Criterion {
+    Criterion::ALL.into_iter().find(|c| c.name() == name).unwrap_or(Criterion::Energy)
+}
+
+/// A speed, m/s.
+fn speed(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(v) if v.is_finite() && v > 0.0 => Ok(v),
+        Ok(_) => Err("is no positive number of m/s; write for example 0.6".into()),
+        Err(_) => Err("is not a number; write for example 0.6".into()),
+    }
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(v) if (1.0..=1e6).contains(&v) => Ok(v),
+        Ok(_) => Err("must be between 1 and 1000000 per second".into()),
+        Err(_) => Err("is not a number; write for example 1000".into()),
+    }
+}

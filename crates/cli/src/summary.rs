@@ -1,0 +1,170 @@
+//! A result for a person.
+
+use super::digits::decimal;
+use piaffe_verify::certificate::Certificate;
+use piaffe_model::Description;
+use piaffe_model::motion::Criterion;
+use piaffe_optimizer::result::{GaitResult, Status};
+use piaffe_optimizer::search::evidence::Effort;
+use piaffe_optimizer::sensitivity::Sensitivity;
+use std::io::Write;
+
+/// Motor speeds are read in rev/min.
+fn rev_per_min(joint_speed: f64, gear: f64) -> f64 {
+    joint_speed * gear * 60.0 / std::f64::consts::TAU
+}
+
+/// A certificate in a line.
+fn standing(c: &Certificate) -> String {
+    if c.is_certified() {
+        let pieces: usize = c.half_steps.iter().map(|h| h.evaluations).sum();
+        return format!("certified: at no time is a margin below -{:.0e} (proven on {pieces} pieces)", c.tolerance);
+    }
+    let gaps = c.gaps.iter().map(|gap| {
+        let verdict = if gap.violated { "broken" } else { "unproven" };
+        let [from, to] = [gap.from, gap.to].map(|t| decimal(t, 6));
+        format!("{} {verdict} in half step {} from {from} to {to} s", gap.constraint, gap.half_step)
+    });
+    let open = c.cycle_error.is_none_or(|error| error > c.tolerance).then(|| "cycle not proven to close".to_string());
+    format!("sampled: {}", gaps.chain(open).collect::<Vec<_>>().join("\n                  "))
+}
+
+/// How sure it is that there is nothing better.
+fn confidence(r: &GaitResult) -> String {
+    let Effort { starts, informed, optima, .. } = r.search.effort;
+    let more = if informed > 0 { format!(" (and {informed} from or near known optima)") } else { String::new() };
+    let Some(best) = r.local_optima.first() else { return format!("no optimum from {starts} starts{more}") };
+    let unseen = match r.search.effort.expected_optima() {
+        Some(expected) => format!("{:.1} further optima are to be expected", expected - optima as f64),
+        None => "too few to tell how many further optima to expect".into(),
+    };
+    format!("reached by {} of {starts} starts{more}; {unseen}", best.reached)
+}
+
+/// Prints all there is to know about a result.
+pub fn print(description: &Description, r: &GaitResult) -> std::io::Result<()> {
+    let mut out = super::output::person();
+    writeln!(out, "{} of {}, least {} at {} m/s: {}", r.gait, r.robot, r.criterion.name(), r.speed, r.message)?;
+    if !r.conflicts.is_empty() {
+        for c in &r.conflicts {
+            let what = if c.violation > 1e-8 {
+                format!("violated by {:.3} (scaled)", c.violation)
+            } else {
+                "in the way".into()
+            };
+            writeln!(out, "  {:<34} half step {}, t = {} s: {what}", c.constraint, c.half_step, decimal(c.time, 3))?;
+        }
+    }
+    if r.status == Status::Infeasible {
+        match r.nearest_speed {
+            Some(v) => writeln!(out, "  The nearest speed that works is {v} m/s.")?,
+            None => writeln!(out, "  No speed nearby works either: loosen one of these limits in the specification.")?,
+        }
+    }
+    if let (Some(cost), Some(costs)) = (r.cost, r.costs) {
+        writeln!(out, "  cost            {} {}", decimal(cost, 4), r.criterion.unit())?;
+        if let Some(without) = r.virtual_cost {
+            let more = 100.0 * (cost / without - 1.0);
+            let without = decimal(without, 4);
+            writeln!(out, "  at real legs    {more:+.3} % against {without} with limits at the virtual legs only")?;
+        }
+        for criterion in Criterion::ALL {
+            writeln!(out, "  {:<15} {} {}", criterion.name(), decimal(costs.of(criterion), 4), criterion.unit())?;
+        }
+    }
+    if let Some(costs) = &r.costs {
+        let transport = description.cost_of_transport(costs);
+        writeln!(out, "  of transport    {transport:.4} (energy per weight and distance)")?;
+    }
+    if let Some(step) = r.step_length {
+        let durations: Vec<String> = r.durations.iter().map(|t| format!("{} s", decimal(*t, 4))).collect();
+        writeln!(out, "  half steps      {}", durations.join(" + "))?;
+        writeln!(out, "  step length     {} m", decimal(step, 4))?;
+    }
+    if !r.peaks.is_empty() {
+        writeln!(out, "  peaks at the joints     torque, N·m        speed, rad/s (motor, rev/min)   envelope margin")?;
+    }
+    for (peak, joint) in r.peaks.iter().zip(description.joints.iter()) {
+        writeln!(
+            out,
+            "    {:<16} {:>8} of {:<6} {:>10} of {:<6} ({:4.0} of {:4.0}) {:14.1} %",
+            peak.name,
+            decimal(peak.torque, 3),
+            decimal(peak.max_torque, 1),
+            decimal(peak.speed, 3),
+            decimal(peak.unloaded_speed, 2),
+            rev_per_min(peak.speed, joint.gear),
+            rev_per_min(peak.unloaded_speed, joint.gear),
+            // An active limit has a margin of rounding size, of either sign.
+            (1000.0 * peak.envelope_margin).round().abs() / 10.0
+                * if peak.envelope_margin < -5e-4 { -1.0 } else { 1.0 }
+        )?;
+    }
+    if let Some(receipt) = &r.receipt {
+        writeln!(
+            out,
+            "  receipt         largest violation {:.1e}, cycle error {:.1e}, KKT residual {} ({} points per half step)",
+            receipt.max_violation,
+            receipt.cycle_error,
+            receipt.kkt_residual.map_or("unknown".into(), |kkt| format!("{kkt:.1e}")),
+            receipt.grid
+        )?;
+        if let Some(certificate) = &r.certificate {
+            writeln!(out, "  certificate     {}", standing(certificate))?;
+        }
+        let active: Vec<String> = receipt
+            .findings
+            .iter()
+            .map(|f| format!("{} (half step {}, t = {} s)", f.constraint, f.half_step, decimal(f.time, 3)))
+            .collect();
+        writeln!(
+            out,
+            "  active          {}",
+            if active.is_empty() { "nothing".into() } else { active.join("\n                  ") }
+        )?;
+        if let Some(worst) = receipt.worst.as_ref().filter(|_| r.status != Status::Optimal) {
+            writeln!(
+                out,
+                "  worst           {} (half step {}, t = {} s): {:.2e}",
+                worst.constraint,
+                worst.half_step,
+                decimal(worst.time, 3),
+                worst.margin
+            )?;
+        }
+    }
+    if let Some(optimality) = &r.optimality {
+        let held = match optimality.holders().as_slice() {
+            [] => "by nothing but the cycle".into(),
+            holders => format!("by {}", holders[..holders.len().min(3)].join(", ")),
+        };
+        writeln!(out, "  optimality      held {held}")?;
+    }
+    if let Some(sensitivities) = &r.sensitivities {
+        let advice = |s: &Sensitivity| {
+            let sign = if s.elasticity > 0.0 { "−" } else { "+" };
+            format!("{} {sign}1 % saves {:.2} %", s.parameter, s.elasticity.abs())
+        };
+        let advice: Vec<String> = sensitivities.of_robot().take(3).map(advice).collect();
+        writeln!(out, "  to change       {}", advice.join("; "))?;
+    }
+    if let Some(stability) = &r.stability {
+        writeln!(out, "  joints by clock {}", stability.clock)?;
+        writeln!(out, "  joints by phase {}", stability.phase)?;
+    }
+    if let Some(legs) = &r.real_legs {
+        writeln!(out, "  real legs       {}", legs.sentence())?;
+        writeln!(out, "                  least margin {}", legs.support.words())?;
+        writeln!(out, "                  at the impact {}", legs.impact.words())?;
+        writeln!(out, "                  {}", legs.cost(r.criterion))?;
+    }
+    writeln!(out, "  search          {}", confidence(r))?;
+    if r.local_optima.len() > 1 {
+        writeln!(out, "  local optima    (cost, half steps, how many starts led there)")?;
+        for o in &r.local_optima {
+            let durations: Vec<String> = o.durations.iter().map(|t| decimal(*t, 3)).collect();
+            writeln!(out, "    {:>12}  {}  {}", decimal(o.cost, 4), durations.join("/"), o.reached)?;
+        }
+    }
+    writeln!(out, "  time            {:.3} s", r.seconds)
+}

@@ -1,0 +1,296 @@
+//! `piaffe sweep`: optima over speeds, greatest speeds and crossovers, resumed where an earlier run stopped.
+
+use super::digits::decimal;
+use super::document::OVERVIEW;
+use super::journal::{Folder, effort};
+use super::{output, report, speed};
+use indicatif::{ProgressBar, ProgressStyle};
+use piaffe_optimizer::altered::Altered;
+use piaffe_model::Gait;
+use piaffe_model::motion::Criterion;
+use piaffe_report::overview::{Greatest, Overview};
+use piaffe_report::Record;
+use piaffe_optimizer::result::GaitResult;
+use piaffe_optimizer::search::atlas::{VISITS, sweep};
+use piaffe_optimizer::search::crossover::{Comparison, solve};
+use piaffe_optimizer::search::fastest::{MaximumSpeed, maximum_speed};
+use piaffe_optimizer::search::multi_start::Settings;
+use rayon::prelude::*;
+use std::io::Write;
+use std::path::Path;
+
+/// One gait over all speeds.
+struct Line {
+    gait: &'static dyn Gait,
+    maximum: Option<MaximumSpeed>,
+    /// Per criterion, by speed: the points of the sweep, the one at the greatest speed, and those next to crossovers.
+    results: Vec<Vec<GaitResult>>,
+}
+
+pub fn run(
+    gaits: &[&'static dyn Gait],
+    real_legs: bool,
+    criteria: &[Criterion],
+    speeds: &[f64],
+    path: &Path,
+    settings: &Settings,
+) -> anyhow::Result<bool> {
+    let gaits = &if real_legs { at_real_legs(gaits)? } else { gaits.to_vec() };
+    let visits = VISITS * (criteria.len() * speeds.len()) as u64;
+    let folder = Folder::open(path, progress(gaits.iter().map(|g| visits * effort(*g)).sum()))?;
+    folder.compare(&gaits.iter().map(|g| *g as &dyn Gait).collect::<Vec<_>>(), criteria, speeds, settings);
+    let mut lines: Vec<Line> = gaits.par_iter().map(|gait| line(*gait, criteria, speeds, settings, &folder)).collect();
+    folder.bar.set_message("crossovers");
+    let mut further = Vec::new();
+    for c in 0..criteria.len() {
+        for (k, a) in lines.iter().enumerate() {
+            for (l, b) in lines.iter().enumerate().skip(k + 1) {
+                let [of_a, of_b] = solve([a.gait, b.gait], [&a.results[c], &b.results[c]], settings, &folder);
+                further.extend([(k, c, of_a), (l, c, of_b)]);
+            }
+        }
+    }
+    for (line, c, results) in further {
+        lines[line].add(c, results);
+    }
+    folder.bar.set_message("examination");
+    lines.par_iter_mut().for_each(Line::examine);
+    folder.bar.finish_and_clear();
+    if let Some(error) = folder.failure() {
+        return Err(error);
+    }
+    let all = || lines.iter().flat_map(|line| line.results.iter().flatten());
+    for result in all() {
+        folder.write(result)?;
+    }
+    let overview = Overview::new(&all().cloned().collect::<Vec<_>>(), &ends(&lines));
+    output::write_json(&path.join(OVERVIEW), &overview)?;
+    output::quiet_when_closed(tell(&lines, criteria, speeds, &overview))?;
+    output::say!("results in {}", path.display());
+    let any = all().any(GaitResult::is_optimal);
+    if any {
+        let records = lines.iter().flat_map(Line::records).collect();
+        let page = report::write(records, overview.extremes(), None, path)?;
+        output::say!("To be seen in {}", page.display());
+    }
+    Ok(any)
+}
+
+/// The gaits with their limits at each real leg.
+fn at_real_legs(gaits: &[&'static dyn Gait]) -> anyhow::Result<Vec<&'static dyn Gait>> {
+    let altered = |gait: &&'static dyn Gait| {
+        let altered = Altered::at_real_legs(*gait).map_err(anyhow::Error::msg)?;
+        // Until the program ends, like all other gaits.
+        Ok(Box::leak(Box::new(altered)) as &'static dyn Gait)
+    };
+    gaits.iter().map(altered).collect()
+}
+
+fn line(gait: &'static dyn Gait, criteria: &[Criterion], speeds: &[f64], settings: &Settings, folder: &Folder) -> Line {
+    let mut results = sweep(gait, criteria, speeds, settings, folder);
+    let mut maximum = maximum_speed(gait, &results.concat(), settings, folder);
+    if let Some(maximum) = &mut maximum {
+        let known = results.iter().flatten().filter(|r| r.is_optimal()).map(|r| r.speed).fold(0.0, f64::max);
+        for (line, new) in results.iter_mut().zip(maximum.optima(gait, criteria, known, settings, folder)) {
+            line.push(new);
+            line.sort_by(|a, b| a.speed.total_cmp(&b.speed));
+        }
+    }
+    Line { gait, maximum, results }
+}
+
+impl Line {
+    /// Adds results of a criterion at speeds that are not there yet.
+    fn add(&mut self, criterion: usize, results: Vec<GaitResult>) {
+        let line = &mut self.results[criterion];
+        for result in results {
+            let place = line.partition_point(|r| r.speed < result.speed);
+            if line.get(place).is_none_or(|r| r.speed != result.speed) {
+                line.insert(place, result);
+            }
+        }
+    }
+
+    /// Adds to all results what is told beyond their verdict.
+    fn examine(&mut self) {
+        let gait = self.gait;
+        self.results.par_iter_mut().flatten().for_each(|result| result.examine(gait));
+    }
+
+    fn records(&self) -> Vec<Record<'static>> {
+        self.results.iter().flatten().map(|r| Record::issued(r.clone(), self.gait)).collect()
+    }
+}
+
+/// Where the search found that the gaits end.
+fn ends(lines: &[Line]) -> Vec<Greatest> {
+    let end = |line: &Line| {
+        let MaximumSpeed { speed, ended_by, .. } = line.maximum.clone()?;
+        Some(Greatest { gait: line.gait.description().key.into(), speed, ended_by })
+    };
+    lines.iter().filter_map(end).collect()
+}
+
+/// A bar in units of effort, with what is left; hidden where standard error is no terminal.
+fn progress(effort: u64) -> ProgressBar {
+    let style = ProgressStyle::with_template("{msg} {bar:30} {percent} % {elapsed}, about {eta} left");
+    let bar = if output::is_quiet() { ProgressBar::hidden() } else { ProgressBar::new(effort) };
+    bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())).with_message("optima")
+}
+
+fn tell(lines: &[Line], criteria: &[Criterion], speeds: &[f64], overview: &Overview) -> std::io::Result<()> {
+    let mut out = output::person();
+    let mut speeds: Vec<f64> = speeds.iter().copied().chain(overview.maximum_speeds.iter().map(|m| m.speed)).collect();
+    speeds.sort_by(f64::total_cmp);
+    speeds.dedup();
+    out.write_all(table(lines, criteria, &speeds).as_bytes())?;
+    for hole in lines.iter().flat_map(|line| line.results.iter().flatten()).filter(|r| !r.is_optimal()) {
+        writeln!(out, "{}, {} at {} m/s: {}", hole.gait, hole.criterion.name(), hole.speed, hole.message)?;
+    }
+    for line in lines {
+        let name = line.gait.description().key;
+        match overview.maximum_speeds.iter().find(|m| m.gait == name) {
+            Some(m) => {
+                let weightiest = &m.ended_by[..m.ended_by.len().min(3)];
+                let why = if weightiest.is_empty() { "no single constraint".into() } else { weightiest.join(", ") };
+                writeln!(out, "{name} goes up to {} m/s; what stops it: {why}", decimal(m.speed, 3))?;
+            }
+            None if line.results.iter().flatten().any(GaitResult::is_optimal) => {
+                writeln!(out, "{name}: no greatest speed found")?;
+            }
+            None => writeln!(out, "{name}: no optimum at any of these speeds")?,
+        }
+    }
+    for comparison in &overview.comparisons {
+        writeln!(out, "{}", words(comparison, &overview.maximum_speeds))?;
+    }
+    Ok(())
+}
+
+/// Costs over speeds, a column per gait and criterion; a dash where no optimum was found, nothing where none was sought.
+fn table(lines: &[Line], criteria: &[Criterion], speeds: &[f64]) -> String {
+    let mut text = format!("{:>8}", "m/s");
+    for criterion in criteria {
+        for line in lines {
+            text += &format!(" {:>16}", format!("{} {}", line.gait.description().key, criterion.name()));
+        }
+    }
+    text.push('\n');
+    for speed in speeds {
+        text += &format!("{:>8}", decimal(*speed, 3));
+        for c in 0..criteria.len() {
+            for line in lines {
+                let cell = match line.results[c].iter().find(|r| r.speed == *speed) {
+                    Some(result) => result.cost.map_or("-".into(), |cost| decimal(cost, 4)),
+                    None => String::new(),
+                };
+                text += &format!(" {cell:>16}");
+            }
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// Which of two gaits is cheaper where, and why the comparison ends.
+fn words(comparison: &Comparison, ends: &[Greatest]) -> String {
+    let other = |name: &str| comparison.gaits.iter().find(|g| *g != name).map_or("", String::as_str).to_string();
+    let [_, last] = comparison.common;
+    let mut cheaper = comparison.cheaper.clone();
+    let mut text = format!("{}: ", comparison.criterion.name());
+    for x in &comparison.crossovers {
+        let [below, above] = x.bracket;
+        let at = match above - below < 1e-3 {
+            true => format!("at {:.3}", 0.5 * (below + above)),
+            false => format!("between {below:.3} and {above:.3}"),
+        };
+        text += &format!("{} overtakes {} {at} m/s; ", x.to, other(&x.to));
+        cheaper.clone_from(&x.to);
+    }
+    let until = match ends.iter().find(|end| end.speed == last) {
+        Some(end) => format!("until the {} ends", end.gait),
+        None => "to the end of the sweep".into(),
+    };
+    text + &format!("{cheaper} is cheaper than {} {until} at {last:.3} m/s", other(&cheaper))
+}
+
+/// More speeds than this are a slip of the pen.
+const MOST: usize = 10_000;
+
+/// `0.1..1.6:0.1` or `0.3,0.6,0.9`, in m/s.
+pub fn parse_speeds(text: &str) -> Result<Vec<f64>, String> {
+    let number = |t: &str| speed(t.trim()).map_err(|why| format!("`{}` {why}", t.trim()));
+    let mut speeds = if let Some((range, step)) = text.split_once(':') {
+        let (from, to) = range.split_once("..").ok_or("a range reads FROM..TO:STEP, for example 0.1..1.6:0.1")?;
+        let (from, to, step) = (number(from)?, number(to)?, number(step)?);
+        if to < from {
+            return Err(format!("the range ends below its beginning: write {to}..{from}:{step}"));
+        }
+        let count = ((to - from) / step + 1e-9).floor();
+        if count >= MOST as f64 {
+            return Err(format!("the range has {count:.3e} speeds, which is more than {MOST}: take a greater step"));
+        }
+        if from + step == from {
+            return Err(format!("a step of {step} is nothing beside {from}: take a greater step"));
+        }
+        // Multiples of the step, free of accumulated rounding.
+        (0..=count as usize).map(|k| rounded(from + k as f64 * step)).collect()
+    } else if text.contains("..") {
+        return Err("a range reads FROM..TO:STEP, for example 0.1..1.6:0.1".into());
+    } else {
+        text.split(',').map(number).collect::<Result<Vec<_>, _>>()?
+    };
+    speeds.sort_by(f64::total_cmp);
+    speeds.dedup();
+    match speeds.len() {
+        count if count > MOST => Err(format!("these are {count} speeds, which is more than {MOST}")),
+        _ => Ok(speeds),
+    }
+}
+
+/// To the digits that a person may have meant.
+fn rounded(speed: f64) -> f64 {
+    format!("{speed:.11e}").parse().unwrap_or(speed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::parse_speeds;
+
+    #[test]
+    fn ranges_and_lists_are_speeds() {
+        assert_eq!(parse_speeds("0.1..0.4:0.1").unwrap(), [0.1, 0.2, 0.3, 0.4]);
+        assert_eq!(parse_speeds("0.6,0.3, 0.6").unwrap(), [0.3, 0.6]);
+        assert_eq!(parse_speeds("1..1:1").unwrap(), [1.0]);
+        assert_eq!(parse_speeds("0.1..1.6:0.1").unwrap().len(), 16);
+        for bad in
+            ["0.1..", "0.1..0.2", "fast", "1..0.5:0.1", "", ",", "0.6,", "0.6,-0.3", "0.6,nan", "0,0.6", "0.1..0.2:0"]
+        {
+            assert!(parse_speeds(bad).is_err(), "{bad}");
+        }
+    }
+
+    /// However odd a range is: all its speeds are positive and finite, and they differ, or it is refused.
+    #[test]
+    fn ranges_have_no_speeds_that_are_none() {
+        assert_eq!(parse_speeds("1e-10..3e-10:1e-10").unwrap(), [1e-10, 2e-10, 3e-10]);
+        assert_eq!(parse_speeds("0.60001,0.60002").unwrap(), [0.60001, 0.60002]);
+        let numbers = ["1e-320", "1e-12", "1e-9", "1e-5", "0.1", "0.6", "1", "1e3", "1e17", "1e300", "1e308", "inf"];
+        let mut accepted = 0;
+        for from in numbers {
+            for to in numbers {
+                for step in numbers {
+                    let range = format!("{from}..{to}:{step}");
+                    let Ok(speeds) = parse_speeds(&range) else { continue };
+                    accepted += 1;
+                    assert!(
+                        !speeds.is_empty() && speeds.iter().all(|v| v.is_finite() && *v > 0.0),
+                        "{range}: {speeds:?}"
+                    );
+                    assert!(speeds.is_sorted_by(|a, b| a < b), "{range}: {speeds:?}");
+                }
+            }
+        }
+        assert!(accepted > 50, "{accepted}");
+    }
+}

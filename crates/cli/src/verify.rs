@@ -1,0 +1,107 @@
+//! `piaffe verify`: what results state, derived anew.
+
+use super::built::gaits;
+use super::document::{self, Document};
+use super::{input, output};
+use anyhow::bail;
+use piaffe_optimizer::audit::{Audit, Statement, Verdict};
+use serde::Serialize;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Differences of a statement that are printed.
+const SHOWN: usize = 3;
+
+/// What is written of a result.
+#[derive(Serialize)]
+struct Entry {
+    /// Its file, and which of the file's results it is if there are several.
+    file: String,
+    confirmed: bool,
+    #[serde(flatten)]
+    audit: Audit,
+}
+
+/// Checks results and sweeps' overviews; true if all that they state about their motions was confirmed. One that cannot be
+/// read does not keep the others from being checked.
+pub fn run(files: &[PathBuf], json: Option<&str>) -> anyhow::Result<bool> {
+    let mut entries = Vec::new();
+    let mut unread = 0;
+    for file in files.iter().flat_map(|file| in_folder(file)) {
+        for audit in file.map_or_else(|error| vec![Err(error)], |file| audits(&file)) {
+            match audit {
+                Ok((file, audit)) => {
+                    if json != Some("-") {
+                        output::quiet_when_closed(print(&file, &audit))?;
+                    }
+                    entries.push(Entry { file, confirmed: audit.is_confirmed(), audit });
+                }
+                Err(error) => {
+                    output::error(&error);
+                    unread += 1;
+                }
+            }
+        }
+    }
+    if let Some(target) = json {
+        output::json_to(target, &entries)?;
+    }
+    if unread > 0 {
+        bail!("{unread} of {} results could not be read", unread + entries.len());
+    }
+    Ok(entries.iter().all(|entry| entry.confirmed))
+}
+
+/// A file, or those of a folder.
+fn in_folder(path: &Path) -> Vec<anyhow::Result<PathBuf>> {
+    if input::is_standard(path) || !path.is_dir() {
+        return vec![Ok(path.into())];
+    }
+    match document::files(path) {
+        Ok(files) => files.into_iter().map(Ok).collect(),
+        Err(error) => vec![Err(error)],
+    }
+}
+
+/// The audits of all that is in a file, each with its name.
+fn audits(file: &Path) -> Vec<anyhow::Result<(String, Audit)>> {
+    match document::read(file) {
+        Ok(Document::Results(results)) => {
+            let audit = |stated: document::Stated| (Audit::new(&stated.value, &stated.result, gaits()), stated.name);
+            results.into_iter().map(|r| r.map(audit).map(|(audit, name)| (name, audit))).collect()
+        }
+        Ok(Document::Sweep(sweep)) => {
+            let results: Vec<_> = sweep.results.iter().map(|stated| stated.result.clone()).collect();
+            vec![Ok((sweep.name, sweep.overview.audit(&sweep.value, &results)))]
+        }
+        Err(error) => vec![Err(error)],
+    }
+}
+
+fn print(file: &str, audit: &Audit) -> std::io::Result<()> {
+    let mut out = output::person();
+    let verdict = if audit.is_confirmed() { "confirmed" } else { "not confirmed" };
+    writeln!(out, "{file}: {}, {verdict}", audit.name)?;
+    // What has one reason is said once.
+    for alike in audit.statements.chunk_by(|a, b| a.reason.is_some() && a.reason == b.reason) {
+        let names: Vec<&str> = alike.iter().map(|s| s.entry.as_str()).collect();
+        let Some(Statement { verdict, reason, differences, .. }) = alike.first() else { continue };
+        let word = match verdict {
+            Verdict::Confirmed => "confirmed",
+            Verdict::NotConfirmed => "NOT CONFIRMED",
+            Verdict::NotChecked => "not checked",
+            Verdict::NotDerivable => "not derivable",
+        };
+        match reason {
+            Some(reason) => writeln!(out, "  {}\n    {word}: {reason}", names.join(", "))?,
+            None => writeln!(out, "  {:<18} {word}", names.join(", "))?,
+        }
+        for d in differences.iter().take(SHOWN) {
+            writeln!(out, "    {}: stated {}, found {}", d.place, d.stated, d.found)?;
+        }
+        if differences.len() > SHOWN {
+            writeln!(out, "    and {} more", differences.len() - SHOWN)?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,413 @@
+//! The interface between generated dynamics and everything that uses them.
+//!
+//! A build generates one type per gait that implements [`Gait`]. Kernels take slices and write their
+//! outputs, one after another and row-major, into `out`; the generated modules also have every
+//! kernel as a function over arrays, with its documentation and operation counts. Coordinates,
+//! frames and units: X = [p, q], world axes Xf forward, Yf up, Zf to the right; SI.
+
+#![forbid(unsafe_code)]
+
+pub mod family;
+pub mod motion;
+mod numbers;
+pub mod units;
+pub mod whole;
+
+use crate::motion::Costs;
+pub use numbers::Lever;
+use std::borrow::Cow;
+
+/// What a gait is made of, in numbers.
+#[derive(Clone, Debug)]
+pub struct Description {
+    /// What the command line calls it: `trot`, or `rabbit/walk` for a gait of a further robot.
+    pub key: &'static str,
+    pub gait: &'static str,
+    pub robot: &'static str,
+    /// m/s², along −Yf.
+    pub gravity: f64,
+    /// Whether p has a z.
+    pub lateral: bool,
+    pub rotation: Rotation,
+    pub half_steps: HalfSteps,
+    /// Parents precede children; body 0 is the platform.
+    pub bodies: Cow<'static, [Body]>,
+    /// Of what the platform fills.
+    pub corners: Cow<'static, [Spot]>,
+    pub joints: Cow<'static, [Joint]>,
+    pub legs: [Leg; 2],
+    /// Index of β in q.
+    pub unactuated: usize,
+    /// Order of the joint polynomials (eq. 15).
+    pub polynomial_order: usize,
+    /// Length of the early values of each stance leg.
+    pub early: [usize; 2],
+    /// What must stay above the ground.
+    pub points: &'static [Point],
+    /// Which of these can be the lowest: whose heights [`Gait::heights`] gives.
+    pub lowest: &'static [usize],
+    pub limits: Limits,
+    /// What each generated kernel costs.
+    pub operations: &'static [Operations],
+}
+
+/// How the platform may rotate: θ is the last of q, about Zf or about Xf.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rotation {
+    None,
+    Pitch,
+    Roll,
+}
+
+/// Whether one half step defines the gait.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HalfSteps {
+    /// The legs swap roles after each half step.
+    Mirrored,
+    /// Two different half steps, on leg 1 and on leg 2.
+    Distinct,
+}
+
+/// A rigid body and the joint that carries it.
+#[derive(Clone, Debug)]
+pub struct Body {
+    pub name: &'static str,
+    pub parent: Option<usize>,
+    /// Index of its joint's coordinate in q.
+    pub coordinate: Option<usize>,
+    /// Axis of its joint: 0, 1, 2 for x, y, z.
+    pub axis: usize,
+    /// Its joint in the parent's axes, m.
+    pub offset: [f64; 3],
+    pub mass: f64,
+    /// Mass centre from its joint in its own axes, m.
+    pub com: [f64; 3],
+    /// Tensor about the mass centre in its own axes, kg·m².
+    pub inertia: [[f64; 3]; 3],
+}
+
+/// An actuated joint; N·m, rad and rad/s at the joint.
+#[derive(Clone, Debug)]
+pub struct Joint {
+    pub name: &'static str,
+    pub range: [f64; 2],
+    pub gear: f64,
+    pub max_torque: f64,
+    pub unloaded_speed: f64,
+    /// Speed limit at `max_torque`.
+    pub loaded_speed: f64,
+    pub rotor_inertia: f64,
+}
+
+/// A virtual leg.
+#[derive(Clone, Debug)]
+pub struct Leg {
+    /// The real legs that it stands for. They move alike; how they share torques and reactions
+    /// is in `four_legs`.
+    pub members: Cow<'static, [Member]>,
+    pub first_joint: usize,
+    pub end_joint: usize,
+    pub foot_body: usize,
+    /// Foot from the joint of `foot_body`, m.
+    pub foot: [f64; 3],
+}
+
+/// A real leg.
+#[derive(Clone, Debug)]
+pub struct Member {
+    pub name: &'static str,
+    /// Its own links from the platform down, with the virtual leg's coordinates. The parent of the first is the
+    /// platform (0), of the others the link before (1, 2, …). Their names are theirs alone in the robot.
+    pub bodies: Cow<'static, [Body]>,
+    /// Names of its joints from the platform down, theirs alone in the robot.
+    pub joints: Cow<'static, [&'static str]>,
+    /// Foot from the joint of the last link, m.
+    pub foot: [f64; 3],
+    /// Its joints, also those that the gait holds still.
+    pub spots: Cow<'static, [Spot]>,
+}
+
+/// A point of a body.
+#[derive(Clone, Copy, Debug)]
+pub struct Spot {
+    /// 0: the platform; k: the k-th link of its leg.
+    pub body: usize,
+    /// In the axes of the body, from its joint (from the mass centre for the platform), m.
+    pub at: [f64; 3],
+}
+
+/// A spot as a part of the gait: what moves it. Where half steps mirror each other a leg also takes the part of its
+/// counterpart, and where the platform rolls it does so as its own mirror image.
+#[derive(Clone, Copy, Debug)]
+pub struct Point {
+    /// As reports show it.
+    pub name: &'static str,
+    /// The real leg whose spot it is, as (virtual leg, member); `None`: one of the platform's corners.
+    pub of: Option<(usize, usize)>,
+    /// Which of its spots.
+    pub spot: usize,
+    /// The virtual leg with which it moves; of no matter for the platform's.
+    pub leg: usize,
+    /// As a mirror shows it that exchanges left and right.
+    pub mirrored: bool,
+}
+
+impl Point {
+    /// How many links lead to it.
+    pub fn links(&self, d: &Description) -> usize {
+        match self.of {
+            Some((leg, member)) => d.legs[leg].members[member].spots[self.spot].body,
+            None => d.corners[self.spot].body,
+        }
+    }
+
+    /// The body that moves like its k-th link, the platform before the first.
+    pub fn body(&self, d: &Description, k: usize) -> usize {
+        let leg = &d.legs[self.leg];
+        if k == 0 { 0 } else { leg.foot_body + k - (leg.end_joint - leg.first_joint) }
+    }
+}
+
+impl Member {
+    /// Its first joint from the platform's mass centre, in the platform's axes, m.
+    pub fn mount(&self) -> [f64; 3] {
+        self.bodies.first().map_or(self.foot, |b| b.offset)
+    }
+}
+
+/// Limits of §6.1.
+#[derive(Clone, Debug)]
+pub struct Limits {
+    pub friction: f64,
+    /// N.
+    pub min_vertical_force: f64,
+    /// Height of the swing parabola, m.
+    pub swing_clearance: f64,
+    /// s.
+    pub half_step_duration: [f64; 2],
+    /// Of the platform's mass centre above the ground, m.
+    pub min_platform_height: f64,
+    /// Of everything but feet above the ground, m.
+    pub body_clearance: f64,
+    /// Whether contact, torques and speeds must also hold at each real leg (see `constraints::sharing`), not only at the
+    /// virtual legs.
+    pub real_legs: bool,
+}
+
+/// Floating-point operations of a generated kernel.
+#[derive(Clone, Copy, Debug)]
+pub struct Operations {
+    pub kernel: &'static str,
+    pub flops: usize,
+    pub divisions: usize,
+    pub sincos: usize,
+    /// What `flops` would be of the expressions as they are derived.
+    pub derived: usize,
+    /// Length of the source.
+    pub bytes: usize,
+}
+
+impl Description {
+    /// Tells one robot and gait from another: a hash of all of its numbers.
+    pub fn fingerprint(&self) -> String {
+        format!("{:016x}", hash(&format!("{self:?}")))
+    }
+
+    /// Whether it is a gait of the build's first robot, which the command line needs no name for.
+    pub fn is_of_first_robot(&self) -> bool {
+        !self.key.contains('/')
+    }
+
+    /// Number of joints.
+    pub fn joints(&self) -> usize {
+        self.joints.len()
+    }
+
+    /// Number of position coordinates p, and of components of a reaction.
+    pub fn positions(&self) -> usize {
+        if self.lateral { 3 } else { 2 }
+    }
+
+    /// Number of coordinates q: joints, then θ where the platform rotates.
+    pub fn orientations(&self) -> usize {
+        self.joints.len() + usize::from(self.rotation != Rotation::None)
+    }
+
+    /// Number of prescribed coordinates Q: all of q but β.
+    pub fn prescribed(&self) -> usize {
+        self.orientations() - 1
+    }
+
+    /// Index in q of the k-th prescribed coordinate.
+    pub fn prescribed_index(&self, k: usize) -> usize {
+        if k < self.unactuated { k } else { k + 1 }
+    }
+
+    /// All of q from its prescribed coordinates and β; of the rates likewise.
+    pub fn complete<T: Copy>(&self, prescribed: &[T], beta: T) -> Vec<T> {
+        let mut all = prescribed.to_vec();
+        all.insert(self.unactuated.min(all.len()), beta);
+        all
+    }
+
+    pub fn total_mass(&self) -> f64 {
+        self.bodies.iter().map(|b| b.mass).sum()
+    }
+
+    /// N.
+    pub fn weight(&self) -> f64 {
+        self.total_mass() * self.gravity
+    }
+
+    /// Energy per weight and distance, E/(m g d): a number without a unit, by which robots of any size compare. It is that of
+    /// the motion with these costs, whichever of them it minimizes.
+    pub fn cost_of_transport(&self, costs: &Costs) -> f64 {
+        costs.energy / self.weight()
+    }
+
+    /// Number of half steps that define the gait.
+    pub fn phases(&self) -> usize {
+        match self.half_steps {
+            HalfSteps::Mirrored => 1,
+            HalfSteps::Distinct => 2,
+        }
+    }
+
+    /// Joints whose torques are independent. Where the platform does not rotate, the unactuated
+    /// joint's torque balances the others on the platform (eq. 1).
+    pub fn independent_torques(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.joints.len()).filter(|j| *j != self.unactuated)
+    }
+
+    /// Length of a straight leg, m.
+    pub fn leg_length(&self) -> f64 {
+        let leg = &self.legs[0];
+        let norm = |v: &[f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let links = self.bodies.iter().filter(|b| b.parent.is_some_and(|p| p != 0));
+        let inner = links.filter(|b| b.coordinate.is_some_and(|c| (leg.first_joint..leg.end_joint).contains(&c)));
+        inner.map(|b| norm(&b.offset)).sum::<f64>() + norm(&leg.foot)
+    }
+
+    /// Whether the joint connects a leg to the platform.
+    pub fn hangs_on_platform(&self, joint: usize) -> bool {
+        self.bodies.iter().any(|b| b.parent == Some(0) && b.coordinate == Some(joint))
+    }
+
+    /// Where the coordinate `k` of q comes from when the legs swap roles: index and sign.
+    pub fn swapped(&self, k: usize) -> (usize, f64) {
+        let [a, b] = &self.legs;
+        if k >= self.joints.len() {
+            return (k, if self.rotation == Rotation::Roll { -1.0 } else { 1.0 });
+        }
+        let from =
+            if k < b.first_joint { b.first_joint + (k - a.first_joint) } else { a.first_joint + (k - b.first_joint) };
+        // A mirror image turns the other way about every axis that lies in the plane of the mirror.
+        let turns = |b: &&Body| b.coordinate == Some(k) && b.axis != 2;
+        let mirrored = self.rotation == Rotation::Roll && self.bodies.iter().any(|b| turns(&b));
+        (from, if mirrored { -1.0 } else { 1.0 })
+    }
+}
+
+/// FNV-1a: the same on every machine and with every compiler.
+pub fn hash(text: &str) -> u64 {
+    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+}
+
+/// Generated dynamics of one gait. `leg` is 0 or 1: the leg in support, or the leg named.
+#[allow(clippy::too_many_arguments)]
+pub trait Gait: Sync {
+    fn description(&self) -> &Description;
+    /// The numbers of the specification on which the gait depends; of families none, since they have parameters.
+    fn levers(&self) -> &'static [Lever] {
+        &[]
+    }
+    /// The closed forms of eq. 2–5, 8 and 9 with the names of the robot's parameters: a LaTeX document.
+    fn latex(&self) -> &'static str;
+    /// The real robot that the virtual legs stand for. Members of families have none: it is generated with numbers.
+    fn whole(&self) -> Option<&'static dyn whole::Whole> {
+        None
+    }
+
+    /// A(q): n × n.
+    fn inertia(&self, q: &[f64], out: &mut [f64]);
+    /// H(q, q̇): n.
+    fn bias(&self, q: &[f64], qd: &[f64], out: &mut [f64]);
+    /// A, then H.
+    fn inertia_and_bias(&self, q: &[f64], qd: &[f64], out: &mut [f64]);
+    /// Kinetic, potential energy.
+    fn energy(&self, x: &[f64], xd: &[f64], out: &mut [f64]);
+    /// Mass centre of the robot, its velocity.
+    fn centre_of_mass(&self, x: &[f64], xd: &[f64], out: &mut [f64]);
+    /// Foot position d.
+    fn foot(&self, leg: usize, x: &[f64], out: &mut [f64]);
+    /// D: n × nc.
+    fn foot_jacobian(&self, leg: usize, q: &[f64], out: &mut [f64]);
+    /// Hᵢ: nc.
+    fn foot_bias(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]);
+    /// σ about the foot, absolute velocities.
+    fn angular_momentum(&self, leg: usize, x: &[f64], xd: &[f64], out: &mut [f64]);
+
+    /// ṗ with the stance foot at rest.
+    fn platform_velocity(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]);
+    /// f1, f2, σ, c, σ̇ (eq. 8, 9).
+    fn momentum_terms(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]);
+    /// Aq, Hq (eq. 6).
+    fn reduced(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]);
+    /// Ẍ, F from the independent torques.
+    fn forward(&self, leg: usize, q: &[f64], qd: &[f64], gamma: &[f64], out: &mut [f64]);
+    /// Ẍ, Γ (all joints), F from Q̈.
+    fn inverse(&self, leg: usize, q: &[f64], qd: &[f64], actuated_dd: &[f64], out: &mut [f64]);
+    /// σ, ∂σ/∂(q, q̇).
+    fn momentum(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]);
+    /// β̈, Γ, F, ∂(Γ, F, balance)/∂(q, q̇, q̈).
+    fn inverse_jacobian(&self, leg: usize, q: &[f64], qd: &[f64], actuated_dd: &[f64], out: &mut [f64]);
+    /// p, swing foot, ∂p/∂q, ∂swing/∂q; from the stance foot.
+    fn placement(&self, leg: usize, q: &[f64], out: &mut [f64]);
+    /// Heights over the ground of the description's `lowest` points, ∂/∂q.
+    fn heights(&self, leg: usize, q: &[f64], out: &mut [f64]);
+    /// Swing foot's velocity, its Jacobian in (q, q̇).
+    fn swing_velocity(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]);
+
+    /// What eq. 8 and 9 need of (Q, Q̇) alone.
+    fn early(&self, leg: usize, actuated: &[f64], actuated_d: &[f64], out: &mut [f64]);
+    /// f1, f2, σ̇, then their derivatives in β.
+    fn late(&self, leg: usize, early: &[f64], beta: f64, out: &mut [f64]);
+    /// ∂f1/∂Q, ∂f2/∂Q, ∂f2/∂Q̇, ∂σ̇/∂Q.
+    fn late_gradient(&self, leg: usize, early: &[f64], beta: f64, out: &mut [f64]);
+
+    /// Impact on the foot of `leg` (eq. 12): Ẋ⁺, impulse.
+    fn impact(&self, leg: usize, q: &[f64], xd: &[f64], out: &mut [f64]);
+    /// Impact on the foot of `leg` after support on the other: q̇⁺, impulse, leaving, landing, Jacobian in (q, q̇⁻);
+    /// where the platform rolls also couple, pitch, and their Jacobian.
+    fn touchdown(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]);
+    /// Gradient and second derivatives (q·q, q·q̇, q·q̈, q̇·q̇) of the weighted sum of an instant's outputs;
+    /// `n` weighs the torque of every joint, then the balance of eq. 10.
+    fn curvature(
+        &self,
+        leg: usize,
+        q: &[f64],
+        qd: &[f64],
+        qdd: &[f64],
+        n: &[f64],
+        phi: &[f64],
+        others: &[f64],
+        out: &mut [f64],
+    );
+    /// Gradient in q and second derivatives (q·q) of the weighted sum of [`Gait::heights`].
+    fn heights_curvature(&self, leg: usize, q: &[f64], weights: &[f64], out: &mut [f64]);
+    /// Second derivatives (q·q, q·q̇⁻, q·q̇⁺) of a touchdown's weighted results.
+    fn touchdown_curvature(&self, leg: usize, q: &[f64], qd: &[f64], xi: &[f64], outputs: &[f64], out: &mut [f64]);
+    /// Where the platform rolls: moment (y, z) about the stance foot, ∂foot/∂q of its leg, ∂(these)/∂(q, q̇, q̈). Elsewhere
+    /// the real legs share equally: not numbers.
+    fn sharing(&self, leg: usize, q: &[f64], qd: &[f64], qdd: &[f64], out: &mut [f64]) {
+        let _ = (leg, q, qd, qdd);
+        out.fill(f64::NAN);
+    }
+    /// Gradient and second derivatives, as of [`Gait::curvature`], of the weighted sum of what [`Gait::sharing`] gives.
+    fn sharing_curvature(&self, leg: usize, q: &[f64], qd: &[f64], qdd: &[f64], weights: &[f64], out: &mut [f64]) {
+        let _ = (leg, q, qd, qdd, weights);
+        out.fill(f64::NAN);
+    }
+    /// Both feet stay (eq. 11): Ẋ⁺, impulses on foot 1 and 2, pivots, scale.
+    fn impact_both(&self, q: &[f64], xd: &[f64], out: &mut [f64]);
+}

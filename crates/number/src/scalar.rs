@@ -1,0 +1,77 @@
+//! The numbers that a motion is evaluated with.
+//!
+//! The physics is written once, for any of them: plain numbers give receipts, dual numbers ([`Dual`](super::Dual))
+//! exact derivatives, and sets of numbers or functions of time proofs.
+
+use nalgebra::{ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign};
+use num_traits::Zero;
+use std::ops::Neg;
+
+/// A field with the functions that rigid-body dynamics takes.
+pub trait Scalar:
+    nalgebra::Scalar
+    + Copy
+    + Zero
+    + ClosedAddAssign
+    + ClosedSubAssign
+    + ClosedMulAssign
+    + ClosedDivAssign
+    + Neg<Output = Self>
+    + From<f64>
+{
+    fn sin_cos(self) -> (Self, Self);
+    fn sqrt(self) -> Self;
+    fn abs(self) -> Self;
+    /// Times a plain number.
+    fn scale(self, factor: f64) -> Self {
+        self * Self::from(factor)
+    }
+    /// The number by which choices are made: step sizes, pivots, which of two cases.
+    fn value(self) -> f64;
+    /// What |x| certainly is not below; NaN where x is not a number.
+    fn least_magnitude(self) -> f64;
+}
+
+/// Gives a kind of number, with its generic parameters in brackets, `a op= b` as `a = a op b`.
+#[macro_export]
+macro_rules! assigning {
+    ($generics:tt $type:ty) => {
+        $crate::assigning! { $generics $type: AddAssign add_assign + }
+        $crate::assigning! { $generics $type: SubAssign sub_assign - }
+        $crate::assigning! { $generics $type: MulAssign mul_assign * }
+        $crate::assigning! { $generics $type: DivAssign div_assign / }
+    };
+    ([$($generics:tt)*] $type:ty: $trait:ident $method:ident $op:tt) => {
+        impl<$($generics)*> std::ops::$trait for $type {
+            fn $method(&mut self, other: Self) {
+                *self = *self $op other;
+            }
+        }
+    };
+}
+
+impl Scalar for f64 {
+    fn sin_cos(self) -> (f64, f64) {
+        libm::sincos(self)
+    }
+
+    fn sqrt(self) -> f64 {
+        f64::sqrt(self)
+    }
+
+    fn abs(self) -> f64 {
+        f64::abs(self)
+    }
+
+    fn scale(self, factor: f64) -> f64 {
+        self * factor
+    }
+
+    fn value(self) -> f64 {
+        self
+    }
+
+    fn least_magnitude(self) -> f64 {
+        f64::abs(self)
+    }
+}

@@ -1,0 +1,106 @@
+//! A gait with some numbers changed that its dynamics do not contain: limits, ranges, the polynomials' order.
+
+use crate::constraints::sharing::obstacle;
+use piaffe_model::whole::Whole;
+use piaffe_model::{Description, Gait, Lever};
+
+/// The generated dynamics of a gait under another description.
+pub struct Altered<'a> {
+    gait: &'a dyn Gait,
+    description: Description,
+}
+
+impl<'a> Altered<'a> {
+    /// `None` if the change touches what the generated code has folded in: bodies, rotors, gravity, coordinates.
+    pub fn new(gait: &'a dyn Gait, change: impl FnOnce(&mut Description)) -> Option<Altered<'a>> {
+        let mut description = gait.description().clone();
+        change(&mut description);
+        (folded(&description) == folded(gait.description())).then_some(Altered { gait, description })
+    }
+
+    /// The same gait with polynomials of another order (eq. 15).
+    pub fn of_order(gait: &'a dyn Gait, order: usize) -> Altered<'a> {
+        Altered { gait, description: Description { polynomial_order: order, ..gait.description().clone() } }
+    }
+
+    /// The same gait with its limits at each real leg too.
+    ///
+    /// # Errors
+    /// If they cannot be imposed there.
+    pub fn at_real_legs(gait: &'a dyn Gait) -> Result<Altered<'a>, String> {
+        let mut description = gait.description().clone();
+        description.limits.real_legs = true;
+        match obstacle(&description) {
+            Some(obstacle) => Err(obstacle),
+            None => Ok(Altered { gait, description }),
+        }
+    }
+}
+
+/// What the generated code depends on, as text.
+fn folded(d: &Description) -> String {
+    let rotors: Vec<f64> = d.joints.iter().map(|j| j.gear * j.gear * j.rotor_inertia).collect();
+    let frame = (d.gravity, d.lateral, d.rotation, d.half_steps, d.unactuated, d.early);
+    format!("{frame:?} {:?} {:?} {:?} {rotors:?}", d.bodies, d.legs, d.corners)
+}
+
+macro_rules! delegate {
+    ($($name:ident($($argument:ident: $type:ty),*);)*) => {
+        $(#[inline]
+        fn $name(&self, $($argument: $type,)* out: &mut [f64]) {
+            self.gait.$name($($argument,)* out);
+        })*
+    };
+}
+
+impl Gait for Altered<'_> {
+    fn description(&self) -> &Description {
+        &self.description
+    }
+
+    /// Of other limits than the specification's none is known.
+    fn levers(&self) -> &'static [Lever] {
+        if self.description.numbers() == self.gait.description().numbers() { self.gait.levers() } else { &[] }
+    }
+
+    fn latex(&self) -> &'static str {
+        self.gait.latex()
+    }
+
+    fn whole(&self) -> Option<&'static dyn Whole> {
+        self.gait.whole()
+    }
+
+    delegate! {
+        inertia(q: &[f64]);
+        bias(q: &[f64], qd: &[f64]);
+        inertia_and_bias(q: &[f64], qd: &[f64]);
+        energy(x: &[f64], xd: &[f64]);
+        centre_of_mass(x: &[f64], xd: &[f64]);
+        foot(leg: usize, x: &[f64]);
+        foot_jacobian(leg: usize, q: &[f64]);
+        foot_bias(leg: usize, q: &[f64], qd: &[f64]);
+        angular_momentum(leg: usize, x: &[f64], xd: &[f64]);
+        platform_velocity(leg: usize, q: &[f64], qd: &[f64]);
+        momentum_terms(leg: usize, q: &[f64], qd: &[f64]);
+        reduced(leg: usize, q: &[f64], qd: &[f64]);
+        forward(leg: usize, q: &[f64], qd: &[f64], gamma: &[f64]);
+        inverse(leg: usize, q: &[f64], qd: &[f64], actuated_dd: &[f64]);
+        momentum(leg: usize, q: &[f64], qd: &[f64]);
+        inverse_jacobian(leg: usize, q: &[f64], qd: &[f64], actuated_dd: &[f64]);
+        placement(leg: usize, q: &[f64]);
+        heights(leg: usize, q: &[f64]);
+        swing_velocity(leg: usize, q: &[f64], qd: &[f64]);
+        early(leg: usize, actuated: &[f64], actuated_d: &[f64]);
+        late(leg: usize, early: &[f64], beta: f64);
+        late_gradient(leg: usize, early: &[f64], beta: f64);
+        impact(leg: usize, q: &[f64], xd: &[f64]);
+        touchdown(leg: usize, q: &[f64], qd: &[f64]);
+        curvature(leg: usize, q: &[f64], qd: &[f64], qdd: &[f64], n: &[f64], phi: &[f64], others: &[f64]);
+        heights_curvature(leg: usize, q: &[f64], weights: &[f64]);
+        touchdown_curvature(leg: usize, q: &[f64], qd: &[f64], xi: &[f64], outputs: &[f64]);
+        sharing(leg: usize, q: &[f64], qd: &[f64], qdd: &[f64]);
+        sharing_curvature(leg: usize, q: &[f64], qd: &[f64], qdd: &[f64], weights: &[f64]);
+        impact_both(q: &[f64], xd: &[f64]);
+    }
+}

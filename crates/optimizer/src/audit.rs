@@ -1,0 +1,215 @@
+//! What a result states, derived anew: from the question and the motion's variables alone.
+//!
+//! An audit says of each statement whether it was confirmed, with both numbers where it was not, or why it could not be
+//! checked. A statement that must be there and is not is one that does not hold.
+
+use piaffe_model::Gait;
+use piaffe_model::motion::Motion;
+use crate::origin::{gait_of, under_its_limits};
+use crate::result::GaitResult;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// Numbers agree that differ by less than this share of them: versions may round differently.
+const RELATIVE: f64 = 1e-9;
+/// Nor do they disagree below this.
+const ABSOLUTE: f64 = 1e-13;
+
+/// What is asked of a result: it is what the rest is derived from.
+const GIVEN: [&str; 6] = ["gait", "criterion", "speed", "variables", "fingerprint", "limits_at_real_legs"];
+/// How it was found. That says nothing about the motion, and cannot be seen from it.
+const HISTORY: [&str; 7] =
+    ["local_optima", "virtual_cost", "conflicts", "nearest_speed", "search", "seconds", "version"];
+/// What is absent, which is compared with what is.
+const ABSENT: &str = "not_examined";
+/// What an optimum may leave open, if it says so: what is told beyond the verdict.
+const MAY_BE_ABSENT: [&str; 3] = ["sensitivities", "stability", "real_legs"];
+
+/// What became of a statement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    Confirmed,
+    NotConfirmed,
+    NotChecked,
+    /// It is of how the motion was found, which does not follow from the motion.
+    NotDerivable,
+}
+
+/// A statement of a result: an entry of its file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Statement {
+    /// The entry's key.
+    pub entry: String,
+    pub verdict: Verdict,
+    /// Why it could not be checked, or by what it is refuted as a whole.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub differences: Vec<Difference>,
+}
+
+/// Where what is stated is not what was found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Difference {
+    /// As in `receipt.findings[0].margin`.
+    pub place: String,
+    pub stated: Value,
+    pub found: Value,
+}
+
+/// The statements of one result.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Audit {
+    pub name: String,
+    pub statements: Vec<Statement>,
+}
+
+impl Audit {
+    /// Checks all that a result says about its motion.
+    pub fn of(result: &GaitResult, gaits: &[&dyn Gait]) -> Audit {
+        Audit::new(&serde_json::to_value(result).unwrap_or_default(), result, gaits)
+    }
+
+    /// The same, where `stated` is the file that `result` was read from: it may have entries that no result has.
+    pub fn new(stated: &Value, result: &GaitResult, gaits: &[&dyn Gait]) -> Audit {
+        Audit::against(stated, result, derived(result, gaits).as_ref())
+    }
+
+    /// The same, where it is known already what the motion makes ([`derived`]).
+    pub fn against(stated: &Value, result: &GaitResult, found: Result<&GaitResult, &(Verdict, String)>) -> Audit {
+        let none = serde_json::Map::new();
+        let entries = stated.as_object().unwrap_or(&none);
+        let (history, claims): (Vec<_>, Vec<_>) = entries
+            .iter()
+            .filter(|(key, value)| !GIVEN.contains(&key.as_str()) && key.as_str() != ABSENT && !is_empty(value))
+            .partition(|(key, _)| HISTORY.contains(&key.as_str()));
+        let mut statements: Vec<Statement> = match found {
+            Ok(found) => {
+                let derived = serde_json::to_value(found).unwrap_or_default();
+                let compared = claims.iter().map(|(key, value)| Statement::compared(key, value, found, &derived));
+                compared.chain(missing(entries, result, &derived)).collect()
+            }
+            Err((verdict, reason)) => {
+                claims.iter().map(|(key, _)| Statement::whole(key, *verdict, reason.clone())).collect()
+            }
+        };
+        let of_search = "how it was found, which a motion does not show";
+        statements
+            .extend(history.iter().map(|(key, _)| Statement::whole(key, Verdict::NotDerivable, of_search.into())));
+        Audit { name: result.name(), statements }
+    }
+
+    /// Whether everything that is stated about the motion was confirmed.
+    pub fn is_confirmed(&self) -> bool {
+        let mut of_motion = self.statements.iter().filter(|s| s.verdict != Verdict::NotDerivable).peekable();
+        of_motion.peek().is_some() && of_motion.all(|s| s.verdict == Verdict::Confirmed)
+    }
+
+    /// The first statement that was not confirmed, in words.
+    pub fn objection(&self) -> Option<String> {
+        if self.is_confirmed() {
+            return None;
+        }
+        let open = |s: &&Statement| !matches!(s.verdict, Verdict::Confirmed | Verdict::NotDerivable);
+        let Some(statement) = self.statements.iter().find(open) else {
+            return Some("it states nothing about its motion".into());
+        };
+        let difference = statement.differences.first();
+        Some(match (&statement.reason, difference) {
+            (Some(reason), _) => format!("`{}`: {reason}", statement.entry),
+            (None, Some(d)) => format!("it states {} for {}, but its motion gives {}", d.stated, d.place, d.found),
+            (None, None) => format!("`{}`", statement.entry),
+        })
+    }
+}
+
+fn is_empty(value: &Value) -> bool {
+    value.is_null() || value.as_array().is_some_and(Vec::is_empty)
+}
+
+/// Statements that a result of such a motion makes and this one does not: each must be there, or be said to be absent.
+fn missing<'a>(
+    stated: &'a serde_json::Map<String, Value>,
+    result: &'a GaitResult,
+    derived: &'a Value,
+) -> impl Iterator<Item = Statement> + 'a {
+    let excused = |key: &str| MAY_BE_ABSENT.contains(&key) && result.not_examined.iter().any(|open| open.entry == key);
+    let entries = derived.as_object().into_iter().flatten();
+    entries
+        .filter(|(key, value)| !GIVEN.contains(&key.as_str()) && !HISTORY.contains(&key.as_str()) && !is_empty(value))
+        .filter(move |(key, _)| key.as_str() != ABSENT && stated.get(*key).is_none_or(is_empty) && !excused(key))
+        .map(|(key, _)| Statement::whole(key, Verdict::NotConfirmed, "it is missing, without a word of why".into()))
+}
+
+/// The result that the variables of another one make, or why there is none.
+///
+/// # Errors
+/// With the verdict on all that is stated, and the reason.
+pub fn derived(result: &GaitResult, gaits: &[&dyn Gait]) -> Result<GaitResult, (Verdict, String)> {
+    let gait = gait_of(result, gaits).map_err(|unusable| (Verdict::NotChecked, unusable.to_string()))?;
+    if result.variables.is_empty() {
+        let reason = "there is no motion: that none was found is a statement about the search";
+        return Err((Verdict::NotChecked, reason.into()));
+    }
+    let motion = Motion { half_steps: result.variables.clone() };
+    under_its_limits(result, gait, |gait| GaitResult::of_motion(gait, result.criterion, result.speed, &motion))
+        .map_err(|obstacle| (Verdict::NotConfirmed, obstacle))?
+        .map_err(|error| (Verdict::NotConfirmed, format!("its motion cannot be derived anew: {error}")))
+}
+
+impl Statement {
+    /// An entry beside what it should be.
+    pub fn of(entry: &str, stated: &Value, found: &Value) -> Statement {
+        let mut differences = Vec::new();
+        compare(entry, stated, found, &mut differences);
+        let verdict = if differences.is_empty() { Verdict::Confirmed } else { Verdict::NotConfirmed };
+        Statement { entry: entry.into(), verdict, reason: None, differences }
+    }
+
+    fn whole(entry: &str, verdict: Verdict, reason: String) -> Statement {
+        Statement { entry: entry.into(), verdict, reason: Some(reason), differences: Vec::new() }
+    }
+
+    fn compared(entry: &str, stated: &Value, result: &GaitResult, found: &Value) -> Statement {
+        let Some(found) = found.get(entry).filter(|found| !found.is_null()) else {
+            return if result.is_optimal() {
+                let reason = "this version derives nothing like it from the motion";
+                Statement::whole(entry, Verdict::NotChecked, reason.into())
+            } else {
+                let reason = format!("the motion is no optimum, and has none ({})", result.message);
+                Statement::whole(entry, Verdict::NotConfirmed, reason)
+            };
+        };
+        Statement::of(entry, stated, found)
+    }
+}
+
+/// Notes where two values differ.
+fn compare(place: &str, stated: &Value, found: &Value, differences: &mut Vec<Difference>) {
+    match (stated, found) {
+        (Value::Object(a), Value::Object(b)) => {
+            // What only one of them has differs from nothing.
+            let keys = a.keys().chain(b.keys().filter(|key| !a.contains_key(*key)));
+            for key in keys {
+                let [a, b] = [a, b].map(|map| map.get(key).unwrap_or(&Value::Null));
+                compare(&format!("{place}.{key}"), a, b, differences);
+            }
+        }
+        (Value::Array(a), Value::Array(b)) => {
+            for i in 0..a.len().max(b.len()) {
+                let [a, b] = [a, b].map(|list| list.get(i).unwrap_or(&Value::Null));
+                compare(&format!("{place}[{i}]"), a, b, differences);
+            }
+        }
+        _ if agree(stated, found) => {}
+        _ => differences.push(Difference { place: place.into(), stated: stated.clone(), found: found.clone() }),
+    }
+}
+
+fn agree(stated: &Value, found: &Value) -> bool {
+    match (stated.as_f64(), found.as_f64()) {
+        (Some(a), Some(b)) => (a - b).abs() <= ABSOLUTE + RELATIVE * a.abs().max(b.abs()),
+        _ => stated == found,
+    }
+}

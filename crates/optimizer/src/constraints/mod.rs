@@ -1,0 +1,120 @@
+//! The constraints of §4.2 and §6.1, one file each.
+//!
+//! A *path constraint* holds at every instant and is a formula in the quantities of an instant; an
+//! *impact constraint* holds at the end of a half step. All read `value ≥ 0` after division by a
+//! natural unit, so that 1e-6 means the same everywhere.
+
+mod actuator;
+mod ground;
+mod impact;
+mod limits;
+mod range;
+mod reaction;
+pub mod sharing;
+mod swing;
+
+pub use impact::ImpactConstraints;
+pub use limits::{JointLimits, Limits};
+
+use crate::instant::Quantities;
+use piaffe_model::Description;
+use piaffe_number::Scalar;
+use sharing::Share;
+
+/// A constraint on the quantities of an instant: `value ≥ 0`.
+#[derive(Clone, Debug)]
+pub struct PathConstraint<T = f64> {
+    /// In words, as reports show it.
+    pub name: String,
+    pub form: Form<T>,
+    /// Unit in which the value is measured.
+    pub unit: f64,
+    /// Whether it also is imposed at the first instant (a joint's range there is that of the last).
+    pub at_start: bool,
+}
+
+/// The formula of a path constraint.
+#[derive(Clone, Debug)]
+pub enum Form<T = f64> {
+    /// `offset + Σ coefficient · quantity`.
+    Linear { offset: T, terms: Vec<(usize, T)> },
+    /// `factor · normal − ‖tangential‖`.
+    Cone { normal: usize, factor: T, tangential: Vec<usize> },
+    /// A limit on one of the real legs.
+    Share(Share<T>),
+}
+
+/// All path constraints of a gait.
+pub fn path_constraints(description: &Description) -> Vec<PathConstraint> {
+    path_constraints_of(description, &Limits::new(description))
+}
+
+/// The same with limits that are numbers of any kind; units are the description's.
+pub fn path_constraints_of<T: Scalar>(description: &Description, limits: &Limits<T>) -> Vec<PathConstraint<T>> {
+    let y = Quantities::new(description);
+    let mut list = actuator::constraints(description, limits, &y);
+    list.extend(reaction::constraints(description, limits, &y));
+    list.push(swing::constraint(description, limits, &y));
+    list.extend(ground::constraints(description, limits, &y));
+    list.extend(range::constraints(description, limits, &y));
+    list.extend(sharing::constraints(description, limits, &y));
+    list
+}
+
+impl<T: Scalar> PathConstraint<T> {
+    fn linear(name: String, unit: f64, offset: T, terms: Vec<(usize, T)>) -> PathConstraint<T> {
+        PathConstraint { name, form: Form::Linear { offset, terms }, unit, at_start: true }
+    }
+
+    /// Scaled value for the quantities of an instant.
+    #[inline]
+    pub fn value(&self, y: &[T]) -> T {
+        let value = match &self.form {
+            Form::Linear { offset, terms } => *offset + terms.iter().fold(T::zero(), |sum, (q, c)| sum + *c * y[*q]),
+            Form::Cone { normal, factor, tangential } => *factor * y[*normal] - norm(y, tangential),
+            Form::Share(share) => share.value(y),
+        };
+        value / T::from(self.unit)
+    }
+}
+
+impl PathConstraint {
+    /// Calls `add(quantity, partial derivative)` for each quantity that the value depends on.
+    #[inline]
+    pub fn partials(&self, y: &[f64], mut add: impl FnMut(usize, f64)) {
+        match &self.form {
+            Form::Linear { terms, .. } => terms.iter().for_each(|(q, c)| add(*q, c / self.unit)),
+            Form::Cone { normal, factor, tangential } => {
+                add(*normal, factor / self.unit);
+                let norm = norm(y, tangential).max(TINY * self.unit);
+                for q in tangential {
+                    add(*q, -y[*q] / norm / self.unit);
+                }
+            }
+            Form::Share(share) => share.partials(y, |q, partial| add(q, partial / self.unit)),
+        }
+    }
+
+    /// Calls `add(quantity, quantity, second derivative)`.
+    pub fn curvature(&self, y: &[f64], mut add: impl FnMut(usize, usize, f64)) {
+        let tangential = match &self.form {
+            Form::Linear { .. } => return,
+            Form::Share(share) => return share.curvature(y, |a, b, second| add(a, b, second / self.unit)),
+            Form::Cone { tangential, .. } => tangential,
+        };
+        let norm = norm(y, tangential).max(TINY * self.unit);
+        for a in tangential {
+            for b in tangential {
+                let unit = if a == b { 1.0 } else { 0.0 };
+                add(*a, *b, (y[*a] * y[*b] / (norm * norm) - unit) / norm / self.unit);
+            }
+        }
+    }
+}
+
+/// Below this share of its unit a tangential force has no direction.
+const TINY: f64 = 1e-11;
+
+fn norm<T: Scalar>(y: &[T], quantities: &[usize]) -> T {
+    quantities.iter().fold(T::zero(), |sum, q| sum + y[*q] * y[*q]).sqrt()
+}

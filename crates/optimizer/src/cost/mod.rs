@@ -1,0 +1,84 @@
+//! The criteria (§4.3), one file each: integrals over s of what the instants hold.
+
+mod drive;
+mod energy;
+mod torque;
+
+pub use drive::Drive;
+
+use crate::instant::Instants;
+use crate::lgl::NODES;
+use piaffe_model::Description;
+use piaffe_model::motion::Criterion;
+use crate::stance::Mesh;
+use drive::Partials;
+
+/// Integral over s ∈ [0, 1] of a criterion's integrand, and its partial derivatives.
+#[derive(Clone, Debug)]
+pub struct Integral {
+    pub value: f64,
+    /// (node, quantity, partial derivative).
+    pub partials: Vec<(usize, usize, f64)>,
+    /// (node, quantity, quantity, second derivative), each unordered pair once.
+    pub seconds: Vec<(usize, usize, usize, f64)>,
+    /// Kinks of |power|: second derivative `weight · ∇power(root) ∇power(root)ᵀ` each.
+    pub kinks: Vec<Kink>,
+    /// What is summed over.
+    pub drives: Vec<Drive>,
+}
+
+impl Integral {
+    /// Room for the integral of any criterion over a mesh.
+    pub fn new(description: &Description, mesh: &Mesh) -> Integral {
+        let drives = Drive::all(description);
+        let nodes = mesh.elements * NODES;
+        let most = drives.iter().map(Drive::most).fold((0, 0), |sum, (a, b)| (sum.0 + a, sum.1 + b));
+        Integral {
+            value: 0.0,
+            partials: Vec::with_capacity(most.0 * nodes),
+            seconds: Vec::with_capacity(most.1 * nodes),
+            kinks: Vec::with_capacity(drives.len() * nodes),
+            drives,
+        }
+    }
+
+    /// Adds the derivatives of a function of something with this gradient, whose derivatives in that are `first` and `second`.
+    fn add(&mut self, node: usize, gradient: &Partials, first: f64, second: f64) {
+        for (k, (a, by_a)) in gradient.iter().enumerate() {
+            self.partials.push((node, *a, first * by_a));
+            if second != 0.0 {
+                let pairs = gradient[k..].iter().map(|(b, by_b)| (node, *a, *b, second * by_a * by_b));
+                self.seconds.extend(pairs);
+            }
+        }
+    }
+}
+
+/// A simple root of a joint's power inside an element.
+#[derive(Clone, Debug)]
+pub struct Kink {
+    /// Which of the drives.
+    pub drive: usize,
+    /// First node of the element.
+    pub first: usize,
+    /// Values of the Lagrange polynomials at the root.
+    pub shape: [f64; NODES],
+    pub weight: f64,
+    /// Slope of the power at the root, per element.
+    pub slope: f64,
+}
+
+/// Integral of the integrand of `criterion` over one half step, per unit of s (multiply by T).
+///
+/// `smoothing` (W) rounds the kinks of |power| off, as √(power² + smoothing²) − smoothing; 0 for the criterion itself.
+pub fn integrate(criterion: Criterion, smoothing: f64, mesh: &Mesh, instants: &Instants, integral: &mut Integral) {
+    integral.value = 0.0;
+    integral.partials.clear();
+    integral.seconds.clear();
+    integral.kinks.clear();
+    match criterion {
+        Criterion::Torque => torque::integrate(mesh, instants, integral),
+        Criterion::Energy if smoothing > 0.0 => energy::integrate_smooth(smoothing, mesh, instants, integral),
+        Criterion::Energy => energy::integrate(mesh, instants, integral),
+    }
+}

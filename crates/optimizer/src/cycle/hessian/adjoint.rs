@@ -1,0 +1,109 @@
+//! Multipliers of what is implicit: the collocation equations of (β, σ), and the balance of eq. 10 at every node.
+
+use super::PhaseWork;
+use crate::cycle::phase::Phase;
+use crate::cycle::problem::CLOSURE;
+use crate::lgl::NODES;
+use piaffe_model::Description;
+use crate::stance::{Mesh, Stance};
+use piaffe_model::units::Units;
+
+impl PhaseWork {
+    /// Multipliers of the collocation equations, from the last element to the first.
+    pub(super) fn adjoint(&mut self, d: &Description, units: &Units, p: &Phase, lambda: &[f64], k: usize) {
+        let nodes = p.mesh.nodes.len();
+        self.omega.clear();
+        self.omega.resize(nodes, [0.0; 2]);
+        self.stationarity.clear();
+        self.direct.clear();
+        for node in 0..nodes {
+            let direct = self.direct(d, p, node);
+            let (by_beta, by_sigma, _) = p.stance.partials(node);
+            self.direct.push(direct);
+            self.stationarity.push([direct[0] + direct[1] * by_beta, direct[1] * by_sigma]);
+        }
+        let last = p.last();
+        self.stationarity[last][0] -= lambda[CLOSURE * k];
+        self.stationarity[last][1] -= lambda[CLOSURE * k + 1] / units.angular_momentum();
+        p.stance.adjoint(&p.mesh, p.duration(), &mut self.stationarity, &mut self.omega);
+    }
+
+    /// ∂L/∂β and ∂L/∂β̇ through the quantities of a node, β̈ eliminated; and the balance's multiplier.
+    fn direct(&self, d: &Description, p: &Phase, node: usize) -> [f64; 3] {
+        let (nq, nj, nc) = (d.orientations(), d.joints(), d.positions());
+        let y = p.instants.quantities;
+        let w = &self.weights[node * y.len()..][..y.len()];
+        let jacobian = p.instants.jacobian(d, node);
+        let entry = |row: usize, order: usize| jacobian[row * 3 * nq + order * nq + d.unactuated];
+        let (mut beta, mut betad, mut betadd) = (0.0, 0.0, 0.0);
+        for (row, weight) in w[..nj + nc].iter().enumerate() {
+            beta += weight * entry(row, 0);
+            betad += weight * entry(row, 1);
+            betadd += weight * entry(row, 2);
+        }
+        let sharing = p.instants.sharing(d, node);
+        for (weight, row) in w[y.shared()].iter().zip(sharing.chunks(3 * nq)) {
+            beta += weight * row[d.unactuated];
+            betad += weight * row[nq + d.unactuated];
+            betadd += weight * row[2 * nq + d.unactuated];
+        }
+        let balance = -betadd / entry(nj + nc, 2);
+        beta += balance * entry(nj + nc, 0);
+        betad += balance * entry(nj + nc, 1);
+        if d.unactuated < nj {
+            beta += w[y.angle(d.unactuated)];
+            betad += w[y.rate(d.unactuated)];
+        }
+        let (height, velocity) = self.swing_weights(p, node);
+        if velocity != 0.0 {
+            let end = usize::from(node == p.last());
+            let row = &p.instants.swing_velocity(end)[nc + 2 * nq..][..2 * nq];
+            beta += velocity * row[d.unactuated];
+            betad += velocity * row[nq + d.unactuated];
+        }
+        let placement = p.instants.placement(d, node);
+        beta += height * placement[2 * nc + nc * nq + nq + d.unactuated];
+        beta += self.travel_weight(p, node) * placement[2 * nc + d.unactuated];
+        beta += w[y.height()] * placement[2 * nc + nq + d.unactuated];
+        for (weight, row) in w[y.heights()].iter().zip(p.instants.heights(d, node).chunks(nq)) {
+            beta += weight * row[d.unactuated];
+        }
+        [beta, betad, balance]
+    }
+}
+
+impl Stance {
+    /// Backward sweep: `stationarity` holds ∂L/∂(β, σ) per node at fixed rates; on return `omega`, zero before, holds the
+    /// weights of T β̇ and T σ̇.
+    fn adjoint(&self, mesh: &Mesh, t: f64, stationarity: &mut [[f64; 2]], omega: &mut [[f64; 2]]) {
+        const M: usize = NODES - 1;
+        let a = &mesh.lobatto.integral;
+        let share = 1.0 / mesh.elements as f64;
+        for e in (0..mesh.elements).rev() {
+            let first = e * M;
+            // Right side: −∂L/∂(β, σ) of the element's own nodes, with what ω already weighs.
+            let mut right = [[0.0; 2]; M];
+            for j in 1..NODES {
+                let node = first + j;
+                let (by_beta, by_sigma, moment) = self.partials(node);
+                let [wb, ws] = omega[node];
+                right[j - 1] = [
+                    -(stationarity[node][0] + t * (wb * by_beta + ws * moment)),
+                    -(stationarity[node][1] + t * wb * by_sigma),
+                ];
+            }
+            let eta = self.system(mesh, e, t).solve_transposed(&right);
+            let mut sums = [0.0; 2];
+            for i in 1..NODES {
+                for j in 0..NODES {
+                    omega[first + j][0] -= share * a[i][j] * eta[i - 1][0];
+                    omega[first + j][1] -= share * a[i][j] * eta[i - 1][1];
+                }
+                sums[0] += eta[i - 1][0];
+                sums[1] += eta[i - 1][1];
+            }
+            stationarity[first][0] -= sums[0];
+            stationarity[first][1] -= sums[1];
+        }
+    }
+}

@@ -1,0 +1,260 @@
+//! Second-order terms of all instants, in the local parameters of a half step: `Uᵀ G U` at every node, products of
+//! gradients where criterion and constraints are no linear functions of the quantities, and T times everything.
+
+use super::products::{cross_duration, product, square};
+use super::{PhaseWork, Workspace};
+use crate::cycle::Cycle;
+use crate::cycle::phase::Phase;
+use crate::lgl::NODES;
+use piaffe_model::{Description, Gait};
+use piaffe_sqp::dot;
+use std::array::from_fn;
+
+/// Share of an element per change of power over slope, beyond which a kink's curvature is averaged.
+const REACH: f64 = 0.3;
+
+impl Cycle<'_> {
+    /// Second-order terms of all instants of half step `k`, in the local parameters.
+    pub(super) fn instant_terms(&self, k: usize, mu: &[f64], work: &mut Workspace) {
+        let d = self.description();
+        let p = &self.phases[k];
+        let t = p.duration();
+        let h = &mut work.h_local;
+        for node in 0..p.mesh.nodes.len() {
+            work.phase.node(self.gait, d, p, node, h);
+        }
+        // Products of quantities: squares of torques, torque times rate, cones.
+        let scale = t * self.per_work();
+        for (slot, row) in work.reach.iter_mut().zip(p.by_theta.chunks(self.moved.len())) {
+            *slot = dot(row, &self.moved);
+        }
+        for (node, a, b, second) in &p.cost.seconds {
+            let (ga, gb) = (p.instants.gradient(*node, *a), p.instants.gradient(*node, *b));
+            if a == b {
+                square(h, ga, second * scale);
+            } else {
+                // The gradient of a rate is sparse.
+                product(h, gb, ga, second * scale);
+            }
+        }
+        for kink in &p.cost.kinks {
+            let g = &mut work.local;
+            g.fill(0.0);
+            for (i, shape) in kink.shape.iter().enumerate().take(NODES) {
+                let node = kink.first + i;
+                for (quantity, partial) in p.cost.drives[kink.drive].power_partials(p.linearized(node)) {
+                    let gradient = p.instants.gradient(node, quantity);
+                    g.iter_mut().zip(gradient).for_each(|(slot, by)| *slot += shape * partial * by);
+                }
+            }
+            // A root that the next step moves out of sight bends the cost less than its slope says:
+            // the last step tells how far the power at the root may change.
+            let change = dot(g, &work.reach);
+            let moved = REACH * change / kink.slope;
+            let weight = kink.weight / (1.0 + moved * moved).sqrt();
+            square(h, g, weight * scale);
+        }
+        self.weighted_path_rows(mu, |phase, node, constraint, multiplier| {
+            if phase == k {
+                constraint.curvature(p.linearized(node), |a, b, second| {
+                    product(h, p.instants.gradient(node, a), p.instants.gradient(node, b), -0.5 * multiplier * second);
+                });
+            }
+        });
+        self.weighted_dips(k, mu, |dip, multiplier| {
+            // The minimum moves: its slope's gradient twice, over the curvature in s.
+            let slope = &mut work.local;
+            slope.fill(0.0);
+            for (i, (share, by)) in dip.lowest.shape.iter().zip(&dip.lowest.slopes).enumerate() {
+                let node = dip.first() + i;
+                let (constraint, y) = (&self.path[dip.constraint], p.linearized(node));
+                constraint.partials(y, |quantity, partial| {
+                    slope.iter_mut().zip(p.instants.gradient(node, quantity)).for_each(|(s, g)| *s += by * partial * g);
+                });
+                constraint.curvature(y, |a, b, second| {
+                    let weight = -0.5 * multiplier * share * second;
+                    product(h, p.instants.gradient(node, a), p.instants.gradient(node, b), weight);
+                });
+            }
+            square(h, slope, multiplier / dip.lowest.curvature);
+        });
+    }
+}
+
+impl PhaseWork {
+    /// Adds `Uᵀ G U` of one node and the curvature of Q, Q̇, Q̈ in the parameters.
+    fn node(&mut self, gait: &dyn Gait, d: &Description, p: &Phase, node: usize, h: &mut [f64]) {
+        let (nq, nj, nc) = (d.orientations(), d.joints(), d.positions());
+        let (layout, t) = (p.layout, p.duration());
+        let (np, m, nt) = (layout.len(), layout.per_joint, layout.prescribed);
+        let y = p.instants.quantities;
+        let w = &self.weights[node * y.len()..][..y.len()];
+        let [_, betad_weight, balance] = self.direct[node];
+        let [omega_beta, omega_sigma] = self.omega[node];
+        let f1 = p.stance.inertia(node);
+        let chi = -(betad_weight + t * omega_beta) / f1;
+        let kappa = t * omega_sigma;
+        self.n.fill(0.0);
+        self.n[..nj].copy_from_slice(&w[..nj]);
+        self.n[nj] = balance;
+        let (height, velocity) = self.swing_weights(p, node);
+        let others = [chi, kappa, height, self.travel_weight(p, node), velocity, w[y.height()]];
+        let [q, qd, qdd] = p.instants.state(d, node);
+        gait.curvature(p.leg, q, qd, qdd, &self.n, &w[y.force(0)..][..nc], &others, &mut self.out);
+        let heights = &w[y.heights()];
+        if heights.iter().any(|w| *w != 0.0) {
+            gait.heights_curvature(p.leg, q, heights, &mut self.heights);
+            let (by_q, q_q) = self.heights.split_at(nq);
+            self.out[..nq].iter_mut().zip(by_q).for_each(|(out, x)| *out += x);
+            self.out[3 * nq..].iter_mut().zip(q_q).for_each(|(out, x)| *out += x);
+        }
+        let shared = &w[y.shared()];
+        if shared.iter().any(|w| *w != 0.0) {
+            gait.sharing_curvature(p.leg, q, qd, qdd, shared, &mut self.shared);
+            self.out.iter_mut().zip(&self.shared).for_each(|(out, shared)| *out += shared);
+        }
+        let (gradient, blocks) = self.out.split_at(3 * nq);
+        let (q_q, rest) = blocks.split_at(nq * nq);
+        let (q_qd, rest) = rest.split_at(nq * nq);
+        let (q_qdd, qd_qd) = rest.split_at(nq * nq);
+        // G between all orders of coordinate i and all of coordinate j.
+        let g = |i: usize, j: usize| {
+            let (ij, ji) = (i * nq + j, j * nq + i);
+            Block { q_q: q_q[ij], q_qd: q_qd[ij], qd_q: q_qd[ji], q_qdd: q_qdd[ij], qdd_q: q_qdd[ji], qd_qd: qd_qd[ij] }
+        };
+        let basis = &p.instants.basis[node * m..][..m];
+        let by_t = p.stance.prescribed.by_duration(node);
+        let beta = d.unactuated;
+        let sensitivity =
+            [&p.stance.beta_p, &p.stance.betad_p, &p.instants.betadd_p].map(|table| &table[node * np..][..np]);
+
+        // Prescribed coordinates with each other: sparse in the parameters.
+        let mut tt = 0.0;
+        for jj in 0..nt {
+            let i = d.prescribed_index(jj);
+            let mut by_duration = [0.0; 3];
+            for ll in 0..nt {
+                let block = g(i, d.prescribed_index(ll));
+                let part = block.times(&by_t[ll]);
+                by_duration = from_fn(|a| by_duration[a] + part[a]);
+                if ll > jj {
+                    continue;
+                }
+                let share = if ll == jj { 0.5 } else { 1.0 };
+                for (image, column) in self.images.iter_mut().zip(basis) {
+                    *image = block.times(column).map(|x| share * x);
+                }
+                for (r, row) in basis.iter().enumerate() {
+                    let slots = &mut h[layout.joint(jj, r) * np + layout.joint(ll, 0)..][..m];
+                    slots.iter_mut().zip(&self.images).for_each(|(slot, image)| *slot += dot3(row, image));
+                }
+            }
+            tt += dot3(&by_t[jj], &by_duration);
+            for (r, row) in basis.iter().enumerate() {
+                h[layout.joint(jj, r) * np + layout.duration()] += dot3(row, &by_duration);
+            }
+        }
+        h[layout.duration() * np + layout.duration()] += 0.5 * tt;
+
+        // Unactuated coordinate: dense in the parameters.
+        self.v.iter_mut().for_each(|v| v.fill(0.0));
+        for jj in 0..nt {
+            let columns = g(d.prescribed_index(jj), beta).columns();
+            for (v, column) in self.v.iter_mut().zip(&columns) {
+                for (slot, row) in v[jj * m..(jj + 1) * m].iter_mut().zip(basis) {
+                    *slot = dot3(row, column);
+                }
+                v[layout.duration()] += dot3(&by_t[jj], column);
+            }
+        }
+        let columns = g(beta, beta).columns();
+        for (v, column) in self.v.iter_mut().zip(&columns) {
+            for (half, s) in column.iter().map(|x| 0.5 * x).zip(&sensitivity).filter(|(half, _)| *half != 0.0) {
+                v.iter_mut().zip(*s).for_each(|(x, y)| *x += half * y);
+            }
+        }
+        // T multiplies β̇ where it is integrated: ω T β̇.
+        self.v[1][layout.duration()] += omega_beta;
+        let [v0, v1, v2] = &self.v;
+        let [s0, s1, s2] = sensitivity;
+        for (r, row) in h.chunks_mut(np).enumerate() {
+            let [x0, x1, x2] = [v0[r], v1[r], v2[r]];
+            for (((slot, s0), s1), s2) in row.iter_mut().zip(s0).zip(s1).zip(s2) {
+                *slot += x0 * s0 + x1 * s1 + x2 * s2;
+            }
+        }
+        // ω T σ̇, and T times the vertical velocity at the ends.
+        if node <= p.last() {
+            p.stance.moment_gradient(node, t, &mut self.scratch);
+            cross_duration(h, &self.scratch, omega_sigma, layout.duration());
+        }
+        if velocity != 0.0 {
+            let weight = w[y.clearance()] / t;
+            self.scratch.copy_from_slice(p.instants.gradient(node, y.clearance()));
+            self.scratch[layout.duration()] -= p.linearized(node)[y.clearance()] / t;
+            cross_duration(h, &self.scratch, weight, layout.duration());
+        }
+
+        // Second derivatives of Q, Q̇, Q̈ themselves, weighted with ∂L/∂(Q, Q̇, Q̈).
+        for jj in 0..nt {
+            let i = d.prescribed_index(jj);
+            let (mut by_q, mut by_qd) = (gradient[i], gradient[nq + i]);
+            if i < nj {
+                by_q += w[y.angle(i)];
+                by_qd += w[y.rate(i)];
+            }
+            let weight = [by_q, by_qd, gradient[2 * nq + i]];
+            let mut duration = 0.0;
+            for (r, b) in basis.iter().enumerate() {
+                let is_rate = p.mesh.basis.is_rate(r);
+                // ∂²/∂parameter∂T of Q, Q̇, Q̈: exponents of T are 0, −1, −2, or one more for rates.
+                let e = [0.0, -1.0, -2.0].map(|e| if is_rate { e + 1.0 } else { e });
+                let mixed = (0..3).map(|a| weight[a] * e[a] * b[a] / t).sum::<f64>();
+                let index = layout.joint(jj, r);
+                h[index * np + layout.duration()] += mixed;
+                let value = p.parameters[index];
+                duration += (0..3).map(|a| weight[a] * e[a] * (e[a] - 1.0) * b[a] / (t * t)).sum::<f64>() * value;
+            }
+            h[layout.duration() * np + layout.duration()] += 0.5 * duration;
+        }
+    }
+
+    /// T times the integral of the criterion.
+    pub(super) fn bilinear(&mut self, p: &Phase, h: &mut [f64], per_work: f64) {
+        self.scratch.fill(0.0);
+        for (node, quantity, partial) in &p.cost.partials {
+            for (s, g) in self.scratch.iter_mut().zip(p.instants.gradient(*node, *quantity)) {
+                *s += partial * g;
+            }
+        }
+        cross_duration(h, &self.scratch, per_work, p.layout.duration());
+    }
+}
+
+/// Second derivatives in the orders of one coordinate (rows) and of another (columns); the others are zero.
+struct Block {
+    q_q: f64,
+    q_qd: f64,
+    qd_q: f64,
+    q_qdd: f64,
+    qdd_q: f64,
+    qd_qd: f64,
+}
+
+impl Block {
+    fn times(&self, v: &[f64; 3]) -> [f64; 3] {
+        [
+            self.q_q * v[0] + self.q_qd * v[1] + self.q_qdd * v[2],
+            self.qd_q * v[0] + self.qd_qd * v[1],
+            self.qdd_q * v[0],
+        ]
+    }
+
+    fn columns(&self) -> [[f64; 3]; 3] {
+        [[self.q_q, self.qd_q, self.qdd_q], [self.q_qd, self.qd_qd, 0.0], [self.q_qdd, 0.0, 0.0]]
+    }
+}
+
+fn dot3(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}

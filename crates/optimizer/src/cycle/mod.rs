@@ -1,0 +1,496 @@
+//! Θ → the whole periodic motion: torques, reactions, criterion, every constraint, exact derivatives (§5).
+//!
+//! Variables, per half step that defines the gait: Q_f, β_f, Q̇_f, β̇_f, interior values of Q, T. The
+//! initial state of a half step follows from the final state of the one before: same configuration,
+//! velocities after the impact, legs renamed where half steps mirror each other (eq. 16, 18, 19).
+//! Equalities: β̇ and β close the cycle (eq. 23, 24; the former as σ), the swing foot lands, and the
+//! mean speed is the given one.
+//!
+//! `phase` is one half step, `dip` a constraint between its nodes, `still` a joint that it holds, `problem` the nonlinear program, `hessian` its
+//! second derivatives.
+
+mod dip;
+mod hessian;
+mod phase;
+mod problem;
+mod sample;
+mod still;
+
+use crate::constraints::{ImpactConstraints, PathConstraint, path_constraints};
+use crate::cost::{Integral, integrate};
+use crate::instant::Glance;
+use crate::lgl::NODES;
+use piaffe_model::{Description, Gait, HalfSteps};
+use piaffe_model::motion::{Costs, Criterion, HalfStep, Motion};
+use crate::stance::Undefined;
+use piaffe_model::units::Units;
+use dip::Dip;
+use hessian::Workspace;
+use phase::Phase;
+pub use problem::{CLOSURE, Place};
+pub use sample::Sample;
+pub use still::{AT_REST, Still};
+
+/// Elements per half step, of 4 intervals each: more where the polynomials of eq. 15 may bend more often.
+///
+/// With so many, least criteria of most robots are within 3·10⁻⁷ of those on finer meshes; see [`Cycle::finer`].
+pub fn elements(d: &Description) -> usize {
+    d.polynomial_order + 1
+}
+
+/// Elements are halved where that changes β or β̇ at the end of a half step by more than this, in the robot's units, or at low
+/// speeds by more than this times twice the speed: the travel has to be the one asked, however short it is;
+const RESOLUTION: f64 = 1e-7;
+/// until there are so many times as many.
+const FINEST: usize = 8;
+
+/// Natural sizes of the variables, in the robot's units: angles, rates, durations.
+const ANGLE: f64 = 0.3;
+const RATE: f64 = 0.525;
+const DURATION: f64 = 0.57;
+
+/// A half step shorter than this, in the robot's unit of time, is no motion.
+const SHORTEST: f64 = 5e-4;
+
+/// Speeds below this, in the robot's unit, are met as closely as positions are known, not as closely as others.
+const SLOWEST: f64 = 1e-7;
+
+/// The optimization problem of one gait, criterion and speed.
+pub struct Cycle<'a> {
+    gait: &'a dyn Gait,
+    pub criterion: Criterion,
+    /// Mean forward speed, m/s.
+    pub speed: f64,
+    /// Rounds off the kinks of |power|, in the robot's unit of power; 0 for the criterion itself.
+    pub smoothing: f64,
+    units: Units,
+    variables: Variables,
+    phases: Vec<Phase>,
+    path: Vec<PathConstraint>,
+    impact: ImpactConstraints,
+    /// Held joints are held by equations; else by what their power costs.
+    by_equations: bool,
+    /// Forward travel in all half steps, m, and how long they take, s.
+    travel: f64,
+    duration: f64,
+
+    // Derivatives of the last linearization, in Θ.
+    linearized: Vec<f64>,
+    /// How far it lies from the one before: the reach of the model that is built from it.
+    moved: Vec<f64>,
+    cost_gradient: Vec<f64>,
+    duration_gradient: Vec<f64>,
+    travel_gradient: Vec<f64>,
+    equality_rows: Vec<f64>,
+    impact_rows: Vec<f64>,
+    workspace: Workspace,
+}
+
+/// Where the variables of a half step stand among its own.
+#[derive(Clone, Debug)]
+pub struct Variables {
+    orientations: usize,
+    prescribed: usize,
+    unactuated: usize,
+    interior: usize,
+    phases: usize,
+}
+
+impl Variables {
+    pub fn new(d: &Description) -> Variables {
+        Variables {
+            orientations: d.orientations(),
+            prescribed: d.prescribed(),
+            unactuated: d.unactuated,
+            interior: d.polynomial_order - 3,
+            phases: d.phases(),
+        }
+    }
+
+    /// Coordinate `k` of q at the end: Q_f, then β_f.
+    pub fn q(&self, k: usize) -> usize {
+        match k.cmp(&self.unactuated) {
+            std::cmp::Ordering::Less => k,
+            std::cmp::Ordering::Equal => self.prescribed,
+            std::cmp::Ordering::Greater => k - 1,
+        }
+    }
+
+    /// Its rate: Q̇_f, then β̇_f.
+    pub fn qd(&self, k: usize) -> usize {
+        self.orientations + self.q(k)
+    }
+
+    /// Interior value `i` of the j-th prescribed coordinate.
+    pub fn interior(&self, i: usize, j: usize) -> usize {
+        2 * self.orientations + i * self.prescribed + j
+    }
+
+    pub fn duration(&self) -> usize {
+        2 * self.orientations + self.interior * self.prescribed
+    }
+
+    /// Variables of one half step.
+    pub fn per_phase(&self) -> usize {
+        self.duration() + 1
+    }
+
+    pub fn total(&self) -> usize {
+        self.phases * self.per_phase()
+    }
+
+    /// q and q̇ at the end of a half step.
+    pub fn end_state(&self, own: &[f64], q: &mut [f64], qd: &mut [f64]) {
+        for k in 0..self.orientations {
+            q[k] = own[self.q(k)];
+            qd[k] = own[self.qd(k)];
+        }
+    }
+}
+
+/// Which constraint a row is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Label {
+    pub name: String,
+    /// 1-based.
+    pub half_step: usize,
+    /// s.
+    pub time: f64,
+}
+
+impl<'a> Cycle<'a> {
+    pub fn new(gait: &'a dyn Gait, criterion: Criterion, speed: f64) -> Cycle<'a> {
+        Self::with_elements(gait, criterion, speed, elements(gait.description()))
+    }
+
+    /// The same with another number of elements per half step: few will do far from an optimum.
+    pub fn with_elements(gait: &'a dyn Gait, criterion: Criterion, speed: f64, elements: usize) -> Cycle<'a> {
+        let d = gait.description();
+        let variables = Variables::new(d);
+        let phases: Vec<Phase> = (0..d.phases()).map(|k| Phase::new(d, stance_leg(d, k), elements)).collect();
+        let impact = ImpactConstraints::new(d);
+        let n = variables.total();
+        Cycle {
+            gait,
+            criterion,
+            speed,
+            smoothing: 0.0,
+            units: Units::new(d),
+            linearized: Vec::with_capacity(n),
+            moved: vec![0.0; n],
+            cost_gradient: vec![0.0; n],
+            duration_gradient: vec![0.0; n],
+            travel_gradient: vec![0.0; n],
+            equality_rows: vec![0.0; n * problem::equalities(d)],
+            impact_rows: vec![0.0; n * d.phases() * impact.count()],
+            workspace: Workspace::new(d, &variables, &phases[0]),
+            variables,
+            phases,
+            path: path_constraints(d),
+            impact,
+            by_equations: true,
+            travel: 0.0,
+            duration: 0.0,
+        }
+    }
+
+    /// The problem on a mesh that resolves a motion.
+    ///
+    /// # Errors
+    /// If the equations admit no such motion.
+    pub fn resolving(
+        gait: &'a dyn Gait,
+        criterion: Criterion,
+        speed: f64,
+        theta: &[f64],
+    ) -> Result<Cycle<'a>, Undefined> {
+        let mut cycle = Cycle::new(gait, criterion, speed);
+        cycle.simulate(theta)?;
+        while let Some(finer) = cycle.finer() {
+            cycle = finer;
+            cycle.simulate(theta)?;
+        }
+        Ok(cycle)
+    }
+
+    /// The problem with twice as many elements, if these do not resolve the last simulated motion.
+    pub fn finer(&self) -> Option<Cycle<'a>> {
+        let resolution = RESOLUTION * (2.0 * self.froude()).min(1.0);
+        let coarse = |p: &Phase| p.mesh_error(self.gait, &self.units).is_ok_and(|error| error > resolution);
+        self.twice_as_fine().filter(|_| self.phases.iter().any(coarse))
+    }
+
+    /// The problem with twice as many elements, if there may be so many.
+    pub fn twice_as_fine(&self) -> Option<Cycle<'a>> {
+        let present = self.phases[0].mesh.elements;
+        let some = present < FINEST * elements(self.description());
+        some.then(|| {
+            let mut finer = Cycle::with_elements(self.gait, self.criterion, self.speed, 2 * present);
+            finer.hold(&self.held().collect::<Vec<_>>());
+            finer
+        })
+    }
+
+    pub fn description(&self) -> &'a Description {
+        self.gait.description()
+    }
+
+    pub fn gait(&self) -> &'a dyn Gait {
+        self.gait
+    }
+
+    /// Number of half steps that define the gait.
+    pub fn phases(&self) -> usize {
+        self.phases.len()
+    }
+
+    /// Number of collocation nodes of a half step.
+    pub fn nodes(&self, phase: usize) -> usize {
+        self.phases[phase].mesh.nodes.len()
+    }
+
+    /// Node `node` as a share of its half step.
+    pub fn instant(&self, phase: usize, node: usize) -> f64 {
+        self.phases[phase].mesh.nodes[node].0
+    }
+
+    /// All path constraints of an instant.
+    pub fn path(&self) -> &[PathConstraint] {
+        &self.path
+    }
+
+    /// The quantities of a node in the last simulated motion.
+    pub fn quantities(&self, phase: usize, node: usize) -> &[f64] {
+        self.phases[phase].instants.row(node)
+    }
+
+    /// Looks at share `s` of a half step, between its nodes, in the last simulated motion.
+    ///
+    /// # Errors
+    /// If the equations admit no such state.
+    pub fn glance(&self, phase: usize, s: f64, glance: &mut Glance) -> Result<(), Undefined> {
+        self.phases[phase].glance(self.gait, s, glance)
+    }
+
+    /// Values of a path constraint at the nodes of an element of the last simulated motion, and the coefficients of the quartic
+    /// through them.
+    pub fn quartic(&self, phase: usize, constraint: usize, element: usize) -> [[f64; NODES]; 2] {
+        let p = &self.phases[phase];
+        let values = p.in_element(&self.path[constraint], element);
+        [values, p.mesh.lobatto.interpolate(&values)]
+    }
+
+    /// Number of variables Θ.
+    pub fn dimension(&self) -> usize {
+        self.variables.total()
+    }
+
+    /// Natural size of each variable: rad, rad/s, s.
+    pub fn scale(&self) -> Vec<f64> {
+        let (v, units) = (&self.variables, &self.units);
+        let mut scale = Vec::new();
+        for _ in 0..v.phases {
+            scale.extend(std::iter::repeat_n(ANGLE, v.orientations));
+            scale.extend(std::iter::repeat_n(RATE * units.rate(), v.orientations));
+            scale.extend(std::iter::repeat_n(ANGLE, v.prescribed * v.interior));
+            scale.push(DURATION * units.time);
+        }
+        scale
+    }
+
+    /// Imposes a path constraint at its lowest point near `s`, in the element there, where it is known to have this value
+    /// (scaled) in the last simulated motion.
+    pub fn impose(&mut self, phase: usize, constraint: usize, s: f64, value: f64) {
+        let p = &mut self.phases[phase];
+        let element = p.mesh.element(s);
+        let from = s * p.mesh.elements as f64 - element as f64;
+        let lowest = p.lowest(&self.path[constraint], element, from);
+        let dip = Dip { constraint, element, offset: value - lowest.value, lowest };
+        match p.dips.iter_mut().find(|known| known.is(&dip)) {
+            Some(known) => *known = dip,
+            None => p.dips.push(dip),
+        }
+    }
+
+    /// Values of the rows between nodes in the last simulated motion (scaled), per half step.
+    pub fn dip_values(&self) -> Vec<Vec<f64>> {
+        let value =
+            |p: &Phase, dip: &Dip| p.lowest(&self.path[dip.constraint], dip.element, dip.lowest.at).value + dip.offset;
+        self.phases.iter().map(|p| p.dips.iter().map(|dip| value(p, dip)).collect()).collect()
+    }
+
+    /// Gives every row between nodes the value that its constraint has in the last simulated motion, where the row's quartic is
+    /// lowest.
+    ///
+    /// # Errors
+    /// If the equations admit no such state.
+    pub fn measure_dips(&mut self, phase: usize) -> Result<(), Undefined> {
+        if self.phases[phase].dips.is_empty() {
+            return Ok(());
+        }
+        let mut glance = Glance::new(self.description(), self.stance_leg(phase));
+        for k in 0..self.phases[phase].dips.len() {
+            let p = &self.phases[phase];
+            let dip = &p.dips[k];
+            let constraint = &self.path[dip.constraint];
+            let lowest = p.lowest(constraint, dip.element, dip.lowest.at);
+            p.glance(self.gait, (dip.element as f64 + lowest.at) / p.mesh.elements as f64, &mut glance)?;
+            let offset = constraint.value(&glance.values) - lowest.value;
+            let dip = &mut self.phases[phase].dips[k];
+            (dip.offset, dip.lowest) = (offset, lowest);
+        }
+        Ok(())
+    }
+
+    /// The half step before `k`.
+    fn before(&self, k: usize) -> usize {
+        (k + self.phases.len() - 1) % self.phases.len()
+    }
+
+    /// Evaluates the motion of Θ.
+    ///
+    /// # Errors
+    /// If the equations admit no such motion.
+    pub fn simulate(&mut self, theta: &[f64]) -> Result<(), Undefined> {
+        let d = self.description();
+        let own = |k: usize| &theta[k * self.variables.per_phase()..][..self.variables.per_phase()];
+        for (k, phase) in self.phases.iter_mut().enumerate() {
+            phase.end(self.gait, &self.variables, own(k));
+        }
+        (self.travel, self.duration) = (0.0, 0.0);
+        for k in 0..self.phases.len() {
+            let before = self.before(k);
+            for row in 0..d.orientations() {
+                let (from, sign) = renamed(d, row);
+                let (q, qd) = (self.phases[before].q_end[from], self.phases[before].touchdown[from]);
+                self.phases[k].q_start[row] = sign * q;
+                self.phases[k].qd_start[row] = sign * qd;
+            }
+            let phase = &mut self.phases[k];
+            phase.set_parameters(self.gait, &self.variables, own(k));
+            let t = phase.duration();
+            if t.is_nan() || t < SHORTEST * self.units.time {
+                return Err(Undefined::NotFinite);
+            }
+            phase.stance.integrate(self.gait, phase.leg, &phase.mesh, &phase.parameters)?;
+            phase.instants.evaluate(self.gait, phase.leg, &phase.mesh, &phase.stance, &phase.parameters);
+            let smoothing = self.smoothing * self.units.power();
+            integrate(self.criterion, smoothing, &phase.mesh, &phase.instants, &mut phase.cost);
+            phase.travel = phase.instants.platform(d, phase.last())[0] - phase.instants.platform(d, 0)[0];
+            self.travel += phase.travel;
+            self.duration += t;
+        }
+        Ok(())
+    }
+
+    /// Partial derivatives of the objective in the quantities of the nodes of a half step: node, quantity, derivative.
+    pub fn objective_partials(&self, phase: usize) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+        let p = &self.phases[phase];
+        let share = p.duration() * self.per_work();
+        p.cost.partials.iter().map(move |(node, quantity, partial)| (*node, *quantity, share * partial))
+    }
+
+    /// The criterion per metre of travel, where the objective is 1 and the mean speed the one asked.
+    pub fn criterion_per_objective(&self) -> f64 {
+        self.units.integrand(self.criterion) / self.speed.abs()
+    }
+
+    /// The speed asked for in the robot's unit, without its sign, as far as it can be told from none.
+    fn froude(&self) -> f64 {
+        (self.speed / self.units.speed()).abs().max(SLOWEST)
+    }
+
+    /// Travel at the speed asked for in the last simulated motion, m.
+    pub fn asked_travel(&self) -> f64 {
+        self.speed * self.duration
+    }
+
+    /// The robot's units.
+    pub fn units(&self) -> &Units {
+        &self.units
+    }
+
+    /// Integral of the criterion's integrand over the whole motion.
+    fn work(&self) -> f64 {
+        self.phases.iter().map(|p| p.duration() * p.cost.value).sum()
+    }
+
+    /// The objective is the mean of the criterion's integrand over time: at a given mean speed it is the criterion per metre
+    /// but for a factor, and it stays what it is where the speed vanishes and metres cost infinitely much.
+    fn objective(&self) -> f64 {
+        self.work() * self.per_work()
+    }
+
+    /// What a unit of work adds to the objective.
+    fn per_work(&self) -> f64 {
+        1.0 / (self.duration * self.units.integrand(self.criterion))
+    }
+
+    /// Both criteria of the last simulated motion.
+    pub fn costs(&self) -> Costs {
+        let d = self.description();
+        let of = |criterion| {
+            let mut sum = 0.0;
+            for p in &self.phases {
+                let mut integral = Integral::new(d, &p.mesh);
+                integrate(criterion, 0.0, &p.mesh, &p.instants, &mut integral);
+                sum += p.duration() * integral.value;
+            }
+            // Backwards, too, metres cost.
+            sum / self.travel.abs()
+        };
+        Costs { energy: of(Criterion::Energy), torque: of(Criterion::Torque) }
+    }
+
+    /// The last simulated motion as numbers.
+    pub fn motion(&self) -> Motion {
+        let d = self.description();
+        let prescribed =
+            |values: &[f64]| -> Vec<f64> { (0..d.prescribed()).map(|j| values[d.prescribed_index(j)]).collect() };
+        let half_step = |p: &Phase| HalfStep {
+            duration: p.duration(),
+            q_initial: prescribed(&p.q_start),
+            qd_initial: prescribed(&p.qd_start),
+            q_interior: (0..p.layout.per_joint - 4)
+                .map(|i| (0..d.prescribed()).map(|j| p.parameters[p.layout.joint(j, 2 + i)]).collect())
+                .collect(),
+            q_final: prescribed(&p.q_end),
+            qd_final: prescribed(&p.qd_end),
+            beta_initial: p.q_start[d.unactuated],
+            betad_initial: p.qd_start[d.unactuated],
+            beta_final: p.q_end[d.unactuated],
+            betad_final: p.qd_end[d.unactuated],
+        };
+        Motion { half_steps: self.phases.iter().map(half_step).collect() }
+    }
+}
+
+/// Θ of a motion.
+pub fn theta(motion: &Motion) -> Vec<f64> {
+    let mut theta = Vec::new();
+    for h in &motion.half_steps {
+        theta.extend_from_slice(&h.q_final);
+        theta.push(h.beta_final);
+        theta.extend_from_slice(&h.qd_final);
+        theta.push(h.betad_final);
+        theta.extend(h.q_interior.iter().flatten());
+        theta.push(h.duration);
+    }
+    theta
+}
+
+/// Leg that half step `k` stands on.
+pub(crate) fn stance_leg(d: &Description, k: usize) -> usize {
+    match d.half_steps {
+        HalfSteps::Mirrored => 0,
+        HalfSteps::Distinct => k,
+    }
+}
+
+/// Where coordinate `k` comes from after a half step: index and sign.
+pub(crate) fn renamed(d: &Description, k: usize) -> (usize, f64) {
+    match d.half_steps {
+        HalfSteps::Mirrored => d.swapped(k),
+        HalfSteps::Distinct => (k, 1.0),
+    }
+}

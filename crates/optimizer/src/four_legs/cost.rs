@@ -1,0 +1,202 @@
+//! What a motion costs on the real joints.
+//!
+//! Counted so that equal shares cost what the virtual legs' joints do: Σ |Γ q̇| and, as n joints share one of the virtual leg,
+//! n Σ Γ². Unequal shares cost more, and which they are is a choice.
+
+use super::lift::Lift;
+use super::limits::Affine;
+use piaffe_model::motion::Costs;
+use nalgebra::DVector;
+use serde::{Deserialize, Serialize};
+
+/// One number for each way to share.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Ways<T> {
+    /// As the virtual legs' joints do it.
+    pub virtual_legs: T,
+    /// Of each criterion the least that any shares cost, at every instant; of more than two feet that of those with the most room.
+    pub least: T,
+    /// The same of shares that keep to all limits; at instants at which none do, of those with the most room.
+    pub within_limits: T,
+    /// With each foot pushing in proportion to its load, as limits at each real leg have it.
+    pub proportional: T,
+}
+
+/// Both criteria over all real joints, per metre of travel.
+pub type RealCosts = Ways<Costs>;
+
+/// What the joints do at an instant.
+#[derive(Clone, Debug)]
+pub struct Effort {
+    /// Γ q̇ of each joint, W.
+    pub powers: Vec<f64>,
+    /// n Σ Γ², N²·m².
+    pub torque: f64,
+}
+
+/// The torque of a real joint over the choice of shares.
+pub struct Motor {
+    pub torque: Affine,
+    /// rad/s.
+    pub rate: f64,
+    /// How many joints do together what the virtual leg's does.
+    pub sharing: f64,
+}
+
+impl Effort {
+    /// For one choice of shares, or two: one for the powers and one for the torques.
+    pub fn new(motors: &[Motor], for_energy: &DVector<f64>, for_torque: &DVector<f64>) -> Effort {
+        let square = |motor: &Motor| motor.sharing * motor.torque.value(for_torque).powi(2);
+        Effort {
+            powers: motors.iter().map(|motor| motor.torque.value(for_energy) * motor.rate).collect(),
+            torque: motors.iter().map(square).sum(),
+        }
+    }
+}
+
+/// The one number of two feet at which Σ n Γ² is least.
+pub fn least_torque(motors: &[Motor]) -> f64 {
+    let sum = |of: &dyn Fn(&Motor) -> f64| motors.iter().map(|m| m.sharing * m.torque.slope[0] * of(m)).sum::<f64>();
+    let stiffness = sum(&|m| m.torque.slope[0]);
+    if stiffness > 0.0 { -sum(&|m| m.torque.at) / stiffness } else { 0.0 }
+}
+
+/// That at which Σ |Γ q̇| is least: between the two at which one of the torques vanishes and the slope changes its sign, and of all
+/// that cost the same the nearest to equal, so that it does not jump from instant to instant.
+pub fn least_energy(motors: &[Motor]) -> f64 {
+    /// Slopes that differ by this share of their sum cancel.
+    const SAME: f64 = 1e-9;
+    let slope = |m: &Motor| (m.torque.slope[0] * m.rate).abs();
+    let mut zeros: Vec<(f64, f64)> =
+        motors.iter().filter(|m| slope(m) > 0.0).map(|m| (-m.torque.at / m.torque.slope[0], slope(m))).collect();
+    zeros.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let total: f64 = zeros.iter().map(|(_, slope)| slope).sum();
+    let mut passed = 0.0;
+    for (k, (zero, slope)) in zeros.iter().enumerate() {
+        passed += slope;
+        if 2.0 * passed >= (1.0 - SAME) * total {
+            let flat = zeros.get(k + 1).filter(|_| 2.0 * passed <= (1.0 + SAME) * total);
+            return 0.0_f64.clamp(*zero, flat.map_or(*zero, |(next, _)| *next));
+        }
+    }
+    0.0
+}
+
+impl RealCosts {
+    /// Of a lifted motion.
+    pub fn of(lift: &Lift) -> RealCosts {
+        let costs = |way: fn(&Ways<Effort>) -> &Effort| {
+            let mut work = Costs { energy: 0.0, torque: 0.0 };
+            for half in 0..2 {
+                let efforts =
+                    || lift.instants.iter().filter(|i| i.half_step == half).map(|i| (i.time, way(&i.efforts)));
+                let joints = efforts().next().map_or(0, |(_, effort)| effort.powers.len());
+                let over_time = |of: &dyn Fn(&Effort) -> f64| {
+                    efforts().map(|(time, effort)| (time, of(effort))).collect::<Vec<_>>()
+                };
+                work.torque += integral(&over_time(&|effort| effort.torque), |parabola, to| parabola.integral(0.0, to));
+                for joint in 0..joints {
+                    work.energy += integral(&over_time(&|effort| effort.powers[joint]), Parabola::magnitude);
+                }
+            }
+            Costs { energy: work.energy / lift.travel, torque: work.torque / lift.travel }
+        };
+        Ways {
+            virtual_legs: costs(|way| &way.virtual_legs),
+            least: costs(|way| &way.least),
+            within_limits: costs(|way| &way.within_limits),
+            proportional: costs(|way| &way.proportional),
+        }
+    }
+}
+
+/// `c0 + c1 t + c2 t²`.
+struct Parabola([f64; 3]);
+
+impl Parabola {
+    fn integral(&self, from: f64, to: f64) -> f64 {
+        let at = |t: f64| t * (self.0[0] + t * (self.0[1] / 2.0 + t * self.0[2] / 3.0));
+        at(to) - at(from)
+    }
+
+    /// The integral of its magnitude from 0, sign by sign.
+    fn magnitude(self, to: f64) -> f64 {
+        let [c0, c1, c2] = self.0;
+        let root = (c1 * c1 - 4.0 * c0 * c2).sqrt();
+        // Written so that nothing cancels; what is no root is no number, or outside.
+        let q = -0.5 * (c1 + root.copysign(c1));
+        let mut ends = [q / c2, c0 / q, to];
+        ends.sort_by(f64::total_cmp);
+        let (mut sum, mut from) = (0.0, 0.0);
+        for end in ends.into_iter().filter(|end| *end > 0.0 && *end <= to) {
+            sum += self.integral(from, end).abs();
+            from = end;
+        }
+        sum
+    }
+}
+
+/// The integral through points in order of time of a function of parabolas through three each, and of a line through the last
+/// two if one is left; `part` gives it from 0.
+fn integral(points: &[(f64, f64)], part: impl Fn(Parabola, f64) -> f64) -> f64 {
+    let mut sum = 0.0;
+    let mut rest = points;
+    while let [(t0, f0), (t1, f1), (t2, f2), ..] = *rest {
+        let (a, b) = (t1 - t0, t2 - t1);
+        let (left, right) = ((f1 - f0) / a, (f2 - f1) / b);
+        let bend = (right - left) / (a + b);
+        sum += part(Parabola([f0, left - bend * a, bend]), a + b);
+        rest = &rest[2..];
+    }
+    if let [(t0, f0), (t1, f1)] = *rest {
+        sum += part(Parabola([f0, (f1 - f0) / (t1 - t0), 0.0]), t1 - t0);
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parabolas_are_integrated_exactly_and_so_are_their_magnitudes() {
+        let f = |t: f64| 1.0 + t - 3.0 * t * t;
+        let points: Vec<(f64, f64)> = [0.0, 0.3, 1.0, 1.1, 2.0].map(|t| (t, f(t))).to_vec();
+        let whole = |t: f64| t + t * t / 2.0 - t * t * t;
+        let plain = integral(&points, |parabola, to| parabola.integral(0.0, to));
+        assert!((plain - whole(2.0)).abs() < 1e-12);
+        let root = (1.0 + 13f64.sqrt()) / 6.0;
+        assert!((integral(&points, Parabola::magnitude) - (2.0 * whole(root) - whole(2.0))).abs() < 1e-12);
+        // Lines and constants are parabolas too.
+        let line: Vec<(f64, f64)> = [0.0, 0.5, 2.0].map(|t| (t, 1.0 - t)).to_vec();
+        assert!((integral(&line, Parabola::magnitude) - 1.0).abs() < 1e-12);
+        let constant: Vec<(f64, f64)> = [0.0, 0.5, 2.0, 3.0].map(|t| (t, -2.0)).to_vec();
+        assert!((integral(&constant, Parabola::magnitude) - 6.0).abs() < 1e-12);
+        let nothing: Vec<(f64, f64)> = [0.0, 0.5, 2.0].map(|t| (t, 0.0)).to_vec();
+        assert_eq!(integral(&nothing, Parabola::magnitude), 0.0);
+    }
+
+    #[test]
+    fn no_share_is_cheaper_than_the_cheapest() {
+        let mut rng = fastrand::Rng::with_seed(5);
+        let mut any = || 2.0 * rng.f64() - 1.0;
+        for _ in 0..100 {
+            let motors: Vec<Motor> = (0..6)
+                .map(|_| Motor {
+                    torque: Affine { at: any(), slope: DVector::from_element(1, any()) },
+                    rate: any(),
+                    sharing: 2.0,
+                })
+                .collect();
+            let at = |s: f64| {
+                let s = DVector::from_element(1, s);
+                let effort = Effort::new(&motors, &s, &s);
+                (effort.powers.iter().map(|power| power.abs()).sum::<f64>(), effort.torque)
+            };
+            let (energy, torque) = (at(least_energy(&motors)).0, at(least_torque(&motors)).1);
+            for s in (-100..=100).map(|k| 0.1 * f64::from(k)) {
+                assert!(at(s).0 >= energy - 1e-12 && at(s).1 >= torque - 1e-12);
+            }
+        }
+    }
+}

@@ -1,0 +1,267 @@
+//! The motion of virtual legs, lifted to the real robot: every joint, the platform in space, torques and reactions.
+
+use super::cost::{Effort, Motor, Ways, least_energy, least_torque};
+use super::equations::{Equations, PLATFORM};
+use super::lack::Lack;
+use super::limits::{Affine, Limit, Limits};
+use super::margin::{Choice, best};
+use super::posture::{Legs, Posture};
+use super::shares::Shares;
+use piaffe_model::Gait;
+use piaffe_model::motion::Motion;
+use crate::stance::Undefined;
+use crate::walk::{Moment, Point, Walk};
+use nalgebra::{DMatrix, DVector};
+
+/// Why there is no lifted motion.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NotLifted {
+    #[error(
+        "{gait} has no generated model of its real legs: families of robots do not; build the robot from its specification"
+    )]
+    NoWhole { gait: String },
+    #[error(transparent)]
+    Undefined(#[from] Undefined),
+    #[error("the cone program for the shares of the feet at {time:.4} s was not solved")]
+    Unsolved { time: f64 },
+}
+
+/// The whole robot at one instant of support.
+#[derive(Clone, Debug)]
+pub struct Instant {
+    /// From the beginning of the step, s.
+    pub time: f64,
+    /// 0 or 1.
+    pub half_step: usize,
+    pub posture: Posture,
+    /// Real legs on the ground.
+    pub stance: Vec<usize>,
+    /// Of every joint of the whole robot, N·m.
+    pub torque: Vec<f64>,
+    /// On every foot, world axes, N.
+    pub reactions: Vec<Point>,
+    /// Least margin of the limits on the legs in support, and which are in the way of more.
+    pub margin: f64,
+    pub binding: Vec<(Limit, f64)>,
+    /// What the equations of motion lack with these shares, and with equal ones.
+    pub lack: Lack,
+    pub equal_lack: Lack,
+    /// What the joints do, by ways to share.
+    pub efforts: Ways<Effort>,
+}
+
+/// The whole robot when feet land.
+#[derive(Clone, Debug)]
+pub struct Impact {
+    pub time: f64,
+    /// The half step that it ends, 0 or 1.
+    pub half_step: usize,
+    /// Before.
+    pub posture: Posture,
+    /// u after less u before.
+    pub change: Vec<f64>,
+    /// Real legs that land.
+    pub landing: Vec<usize>,
+    /// On every foot, world axes, N·s.
+    pub impulses: Vec<Point>,
+    pub margin: f64,
+    pub binding: Vec<(Limit, f64)>,
+    /// As for an instant.
+    pub lack: Lack,
+    pub equal_lack: Lack,
+}
+
+/// One whole step of the real robot.
+pub struct Lift<'a> {
+    pub legs: Legs<'a>,
+    /// In order of time.
+    pub instants: Vec<Instant>,
+    /// At the end of each half step.
+    pub impacts: Vec<Impact>,
+    /// s.
+    pub durations: [f64; 2],
+    /// Forward travel in the step, m.
+    pub travel: f64,
+}
+
+impl<'a> Lift<'a> {
+    /// At equally spaced times, both ends of each half step among them.
+    ///
+    /// # Errors
+    /// If there is no model of the whole robot or no such motion.
+    pub fn even(gait: &'a dyn Gait, motion: &Motion, intervals: usize) -> Result<Lift<'a>, NotLifted> {
+        let walk = Walk::even(gait, motion, intervals)?;
+        Lift::new(gait, &walk.moments, &walk)
+    }
+
+    /// At multiples of 1/`rate` (Hz), and at the end of each half step.
+    ///
+    /// # Errors
+    /// As for [`Lift::even`].
+    pub fn at_rate(gait: &'a dyn Gait, motion: &Motion, rate: f64) -> Result<Lift<'a>, NotLifted> {
+        let (ends, mut walk) = (Walk::even(gait, motion, 1)?, Walk::at_rate(gait, motion, rate)?);
+        walk.moments.extend(ends.moments.into_iter().filter(|m| m.share == 1.0));
+        walk.moments.sort_by(|a, b| {
+            (a.half_step, a.time).partial_cmp(&(b.half_step, b.time)).unwrap_or(std::cmp::Ordering::Equal)
+        });
+        Lift::new(gait, &walk.moments, &walk)
+    }
+
+    fn new(gait: &'a dyn Gait, moments: &[Moment], walk: &Walk) -> Result<Lift<'a>, NotLifted> {
+        let no_whole = || NotLifted::NoWhole { gait: gait.description().key.into() };
+        let legs = Legs::new(gait).ok_or_else(no_whole)?;
+        let instants = moments.iter().map(|m| legs.support(m)).collect::<Result<_, _>>()?;
+        // The last moment of each half step.
+        let ends = |k: usize| moments.get(k + 1).is_none_or(|next| next.half_step != moments[k].half_step);
+        let impact = |k: usize| legs.impact(gait, &moments[k]);
+        let impacts = (0..moments.len()).filter(|k| ends(*k)).map(impact).collect::<Result<_, _>>()?;
+        Ok(Lift { legs, instants, impacts, durations: walk.half_steps.map(|h| h.duration), travel: walk.travel })
+    }
+}
+
+impl Legs<'_> {
+    /// What the real legs do at a moment of the gait.
+    ///
+    /// # Errors
+    /// If the cone program is not solved.
+    pub fn support(&self, m: &Moment) -> Result<Instant, NotLifted> {
+        let posture = self.posture(m);
+        let equations = Equations::new(self.whole, &posture, self.description.leg_length());
+        let stance: Vec<usize> = self.members(m.stance).collect();
+        let (demand, columns) = (equations.demand(&posture.ud), equations.columns(&stance));
+        let equal = self.equal(&posture, &stance, m.force);
+        // The platform has no motors: its six equations are the reactions' alone.
+        let shares = Shares::new(&equations.ranks(&columns, &demand, PLATFORM, self.axis()), &equal);
+        let motors = self.motors(&posture, &shares, &demand, &columns);
+        let rooms = Limits { legs: self }.support(&stance, &posture, &shares, &motors);
+        let choice = Choice::new(&rooms, shares.squeezes.ncols()).ok_or(NotLifted::Unsolved { time: m.time })?;
+        let proportional = shares.nearest_to(&self.proportional(&posture, &shares.nearest));
+        // Of two feet the cheapest shares are known, of more feet not.
+        let (energy, torque) = match shares.squeezes.ncols() {
+            1 => (least_energy(&motors), least_torque(&motors)),
+            _ => (0.0, 0.0),
+        };
+        let efforts = Ways {
+            virtual_legs: Effort {
+                powers: m.torque.iter().zip(&m.qd).map(|(torque, rate)| torque * rate).collect(),
+                torque: m.torque.iter().map(|torque| torque * torque).sum(),
+            },
+            least: Effort::new(
+                &motors,
+                &choice.nearest(energy, f64::NEG_INFINITY),
+                &choice.nearest(torque, f64::NEG_INFINITY),
+            ),
+            within_limits: Effort::new(&motors, &choice.nearest(energy, 0.0), &choice.nearest(torque, 0.0)),
+            proportional: Effort::new(&motors, &proportional, &proportional),
+        };
+        let best = choice.best;
+
+        let mut equal_lack = &demand - &columns * &equal;
+        (0..self.joints.len()).for_each(|j| equal_lack[PLATFORM + j] -= m.torque[self.joints[j]] / self.sharing(j));
+        let reactions = shares.reactions(&best.s);
+        let left = &demand - &columns * &reactions;
+        let torque = left.as_slice()[PLATFORM..].to_vec();
+        let lack = |left: &DVector<f64>| Lack::new(&equations.as_forces(left), &posture, self.weight());
+        let (lack, equal_lack) = (lack(&left.rows(0, PLATFORM).into_owned()), lack(&equal_lack));
+        Ok(Instant {
+            time: m.time,
+            half_step: m.half_step,
+            reactions: self.spread(&posture, &stance, &reactions),
+            posture,
+            stance,
+            torque,
+            margin: best.margin,
+            binding: best.binding,
+            lack,
+            equal_lack,
+            efforts,
+        })
+    }
+
+    /// What the real legs do at the impact that ends a half step, of which `m` is the last moment.
+    ///
+    /// # Errors
+    /// If the cone program is not solved.
+    pub fn impact(&self, gait: &dyn Gait, m: &Moment) -> Result<Impact, NotLifted> {
+        let d = self.description;
+        let (nc, n) = (d.positions(), d.positions() + d.orientations());
+        let posture = self.posture(m);
+        let equations = Equations::new(self.whole, &posture, d.leg_length());
+        let virtual_leg = 1 - m.stance;
+        let landing: Vec<usize> = self.members(virtual_leg).collect();
+        let before = [&m.platform[1][..nc], &m.qd].concat();
+        let mut out = vec![0.0; n + nc];
+        gait.impact(virtual_leg, &m.q, &before, &mut out);
+        let change: Vec<f64> = out.iter().zip(&before).map(|(after, before)| after - before).collect();
+        let (mut platform, mut impulse) = ([0.0; 3], [0.0; 3]);
+        platform[..nc].copy_from_slice(&change[..nc]);
+        impulse[..nc].copy_from_slice(&out[n..]);
+        let change = self.speeds(&posture.axes, platform, &change[nc..]);
+
+        // No joint takes an impulse: all equations are the feet's alone.
+        let (demand, columns) = (equations.impulse_demand(&change), equations.columns(&landing));
+        let equal = self.equal(&posture, &landing, impulse);
+        let shares = Shares::new(&equations.ranks(&columns, &demand, demand.len(), self.axis()), &equal);
+        let rooms = Limits { legs: self }.impact(&landing, &posture, &shares);
+        let best = best(&rooms, shares.squeezes.ncols()).ok_or(NotLifted::Unsolved { time: m.time })?;
+        let impulses = shares.reactions(&best.s);
+        let lack = |impulses: &DVector<f64>| {
+            Lack::new(&equations.as_forces(&(&demand - &columns * impulses)), &posture, self.momentum())
+        };
+        let (lack, equal_lack) = (lack(&impulses), lack(&equal));
+        Ok(Impact {
+            time: m.time,
+            half_step: m.half_step,
+            impulses: self.spread(&posture, &landing, &impulses),
+            posture,
+            change,
+            landing,
+            margin: best.margin,
+            binding: best.binding,
+            lack,
+            equal_lack,
+        })
+    }
+
+    /// Equal shares of a virtual leg's reaction (world axes) in the platform's axes.
+    fn equal(&self, posture: &Posture, feet: &[usize], force: Point) -> DVector<f64> {
+        let share = posture.inside(force.map(|f| f / feet.len() as f64));
+        DVector::from_iterator(3 * feet.len(), feet.iter().flat_map(|_| share))
+    }
+
+    /// These reactions with their tangential parts in proportion to the vertical ones.
+    fn proportional(&self, posture: &Posture, reactions: &DVector<f64>) -> DVector<f64> {
+        let feet = reactions.as_slice().chunks_exact(3).map(|r| posture.outside([r[0], r[1], r[2]]));
+        let all = feet.clone().fold([0.0; 3], |sum, foot| [0, 1, 2].map(|k| sum[k] + foot[k]));
+        let feet =
+            feet.flat_map(|foot| posture.inside([all[0] * foot[1] / all[1], foot[1], all[2] * foot[1] / all[1]]));
+        DVector::from_iterator(reactions.len(), feet)
+    }
+
+    /// All joints with their torques over the choice of shares, Γ = demand − D F.
+    pub fn motors(
+        &self,
+        posture: &Posture,
+        shares: &Shares,
+        demand: &DVector<f64>,
+        columns: &DMatrix<f64>,
+    ) -> Vec<Motor> {
+        let torques = demand - columns * &shares.nearest;
+        let slopes = -(columns * &shares.squeezes);
+        let motor = |joint: usize| Motor {
+            torque: Affine { at: torques[PLATFORM + joint], slope: slopes.row(PLATFORM + joint).transpose() },
+            rate: posture.rates()[joint],
+            sharing: self.sharing(joint),
+        };
+        (0..self.joints.len()).map(motor).collect()
+    }
+
+    /// Of all feet, in world axes.
+    fn spread(&self, posture: &Posture, feet: &[usize], reactions: &DVector<f64>) -> Vec<Point> {
+        let mut all = vec![[0.0; 3]; self.legs.len()];
+        for (leg, r) in feet.iter().zip(reactions.as_slice().chunks_exact(3)) {
+            all[*leg] = posture.outside([r[0], r[1], r[2]]);
+        }
+        all
+    }
+}

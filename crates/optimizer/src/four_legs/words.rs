@@ -1,0 +1,125 @@
+//! The verdict on the real legs in words.
+
+use super::lack::{Component, Lack};
+use super::receipt::{BALANCED, Lacks, RealLegs, Verdict, Worst};
+use piaffe_model::motion::Criterion;
+
+/// What is lacking beyond this is no rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Costs that differ by a smaller part are the same: they are sums over instants.
+const SAME_COST: f64 = 1e-6;
+
+impl Verdict {
+    /// In a word or two.
+    pub fn name(self) -> &'static str {
+        match self {
+            Verdict::EqualShares => "equal shares",
+            Verdict::UnequalShares => "unequal shares",
+            Verdict::BeyondLimits => "beyond limits",
+            Verdict::NoEquilibrium => "no equilibrium",
+        }
+    }
+}
+
+impl RealLegs {
+    /// One sentence: whether the real legs can, and how they share.
+    pub fn sentence(&self) -> String {
+        let Lacks { support, impact } = self.best_shares;
+        let lack = match self.verdict() {
+            Verdict::NoEquilibrium => None,
+            _ if support.share > ROUNDING => Some(support.words()),
+            _ if impact.share > ROUNDING => Some(impact.words_of_impact()),
+            _ => None,
+        };
+        let sentence = self.whether();
+        lack.map_or(sentence.clone(), |lack| {
+            format!("{sentence}; {lack} that is lacking is within what is known of masses")
+        })
+    }
+
+    fn whether(&self) -> String {
+        match self.verdict() {
+            Verdict::EqualShares => "each leg of a pair does its equal share, within all limits".into(),
+            Verdict::UnequalShares => {
+                format!(
+                    "unequal shares keep to all limits; one foot carries up to {:.0} % of the load",
+                    100.0 * self.largest_load
+                )
+            }
+            Verdict::BeyondLimits if self.support.margin < self.impact.margin => {
+                format!("no shares keep to all limits in {:.1} % of the step", 100.0 * self.impossible)
+            }
+            Verdict::BeyondLimits => "no shares of the impact keep to all limits".into(),
+            Verdict::NoEquilibrium => {
+                let Lacks { support, impact } = self.best_shares;
+                let lack = if support.share > BALANCED { support.words() } else { impact.words_of_impact() };
+                format!("the real legs cannot move so: {lack} is lacking")
+            }
+        }
+    }
+}
+
+impl RealLegs {
+    /// What the real joints cost, beside what the virtual legs' joints do.
+    pub fn cost(&self, criterion: Criterion) -> String {
+        // Where no shares are within the limits all the time, the least of any is a bound.
+        let (cost, how) = match self.verdict() {
+            Verdict::BeyondLimits => (&self.costs.least, "at least "),
+            _ => (&self.costs.within_limits, ""),
+        };
+        let (real, without) = (cost.of(criterion), self.costs.virtual_legs.of(criterion));
+        let more = real / without - 1.0;
+        let beside = if more.abs() < SAME_COST { "as".into() } else { format!("{} % more than", percent(more)) };
+        let (name, unit) = (criterion.name(), criterion.unit());
+        format!("{name} on the real joints {how}{real:.4} {unit}, {beside} at the virtual legs'")
+    }
+}
+
+impl Component {
+    pub fn name(self) -> &'static str {
+        match self {
+            Component::ForwardForce => "forward force",
+            Component::VerticalForce => "vertical force",
+            Component::SidewaysForce => "sideways force",
+            Component::SidewaysMoment => "sideways moment",
+            Component::TurningMoment => "turning moment",
+            Component::PitchingMoment => "pitching moment",
+            Component::JointMoment => "moment at a joint",
+        }
+    }
+}
+
+impl Lack {
+    /// As in "a sideways moment of 0.3 % of weight × leg length".
+    pub fn words(&self) -> String {
+        self.measured("weight")
+    }
+
+    /// The same of an impact.
+    pub fn words_of_impact(&self) -> String {
+        self.measured("momentum at √(g × leg length)")
+    }
+
+    fn measured(&self, unit: &str) -> String {
+        let length = if self.of.is_moment() { " × leg length" } else { "" };
+        format!("a {} of {} % of {unit}{length}", self.of.name(), percent(self.share))
+    }
+}
+
+/// Two significant digits.
+fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    match percent.abs() {
+        small if small > 0.0 && small < 1e-3 => format!("{percent:.1e}"),
+        size => format!("{percent:.*}", (1.0 - size.max(1e-9).log10().floor()).clamp(0.0, 4.0) as usize),
+    }
+}
+
+impl Worst {
+    /// Margin, time and what is in the way.
+    pub fn words(&self) -> String {
+        let limits: Vec<&str> = self.binding.iter().map(|b| b.limit.as_str()).collect();
+        format!("{:.4} (half step {}, t = {:.3} s: {})", self.margin, self.half_step, self.time, limits.join(", "))
+    }
+}

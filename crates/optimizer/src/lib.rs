@@ -1,0 +1,28 @@
+//! The optimal periodic gait: from the variables of a motion to everything that criteria and limits look at, the search for an
+//! optimum, and what is said of it.
+
+#![forbid(unsafe_code)]
+
+pub mod altered;
+pub mod audit;
+pub mod constraints;
+pub mod cost;
+pub mod cycle;
+mod examine;
+pub mod finite;
+pub mod four_legs;
+pub mod instant;
+mod lgl;
+pub mod optimality;
+pub mod origin;
+mod polynomial;
+pub mod readback;
+pub mod result;
+pub mod search;
+pub mod sensitivity;
+pub mod stability;
+pub mod stance;
+pub mod states;
+pub mod trajectory;
+pub mod verdict;
+pub mod walk;

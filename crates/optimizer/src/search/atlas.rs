@@ -1,0 +1,150 @@
+//! Optima over speeds (§6.5): continuation both ways, from the other criterion, and restarts.
+//!
+//! Continuation alone stays in its basin, so every speed also gets starts of its own; and what is
+//! found there is carried to the neighbours until nothing improves. To a speed without an optimum the nearest ones of all
+//! criteria are carried, from both sides and by small steps of the speed.
+
+use super::journal::{Journal, common, step};
+use super::local::{Local, Task};
+use super::multi_start::{Settings, search_from};
+use piaffe_model::Gait;
+use piaffe_model::motion::Criterion;
+use crate::result::GaitResult;
+use piaffe_sqp::Control;
+use std::time::Instant;
+
+/// Rounds, each down and up the speeds, in which optima are carried to their neighbours.
+const ROUNDS: usize = 4;
+
+/// Shortest step towards a speed without an optimum, as a share of the way.
+const SHORTEST: f64 = 0.1;
+
+/// How often a point is visited at least: once to search, twice to carry optima to it.
+pub const VISITS: u64 = 3;
+
+/// Optima of one gait at all speeds (ascending), criterion by criterion.
+pub fn sweep(
+    gait: &dyn Gait,
+    criteria: &[Criterion],
+    speeds: &[f64],
+    settings: &Settings,
+    journal: &dyn Journal,
+) -> Vec<Vec<GaitResult>> {
+    let mut lines: Vec<Vec<GaitResult>> = criteria.iter().map(|_| Vec::new()).collect();
+    for (k, &speed) in speeds.iter().enumerate() {
+        for (c, &criterion) in criteria.iter().enumerate() {
+            // The speed before, and the other criterion at this one.
+            let mut neighbours: Vec<Vec<f64>> = Vec::new();
+            neighbours.extend(k.checked_sub(1).and_then(|before| lines[c][before].theta()));
+            neighbours.extend(lines[..c].iter().filter_map(|line| line[k].theta()));
+            let (result, fresh) = search_at(gait, criterion, speed, settings, &neighbours, journal);
+            if fresh {
+                journal.point(&result);
+            }
+            lines[c].push(result);
+            journal.visited(gait, fresh);
+        }
+    }
+    for round in 0..ROUNDS {
+        let mut better = false;
+        for k in (0..speeds.len()).rev().chain(0..speeds.len()) {
+            for c in 0..criteria.len() {
+                let (improved, fresh) = carry(gait, &mut lines, c, k, settings, journal);
+                better |= improved;
+                if round == 0 {
+                    journal.visited(gait, fresh);
+                }
+            }
+        }
+        if !better {
+            break;
+        }
+    }
+    lines
+}
+
+/// Searches at one speed, from these neighbours too; tells whether the result is new to the journal.
+pub fn search_at(
+    gait: &dyn Gait,
+    criterion: Criterion,
+    speed: f64,
+    settings: &Settings,
+    neighbours: &[Vec<f64>],
+    journal: &dyn Journal,
+) -> (GaitResult, bool) {
+    let name = format!("{} {} {speed} searched", gait.description().key, criterion.name());
+    step(journal, &name, &(common(gait, settings), neighbours), || {
+        let started = Instant::now();
+        let found = search_from(gait, criterion, speed, settings, neighbours, &|_| {});
+        GaitResult::new(gait, criterion, speed, &found, settings.seed, || started.elapsed().as_secs_f64())
+    })
+}
+
+/// Carries the optima of the neighbouring speeds and of the other criteria to a point; tells whether it
+/// became better, and whether that was new to the journal.
+fn carry(
+    gait: &dyn Gait,
+    lines: &mut [Vec<GaitResult>],
+    c: usize,
+    k: usize,
+    settings: &Settings,
+    journal: &dyn Journal,
+) -> (bool, bool) {
+    let mut sources = Vec::new();
+    let count = lines[c].len();
+    sources.extend(k.checked_sub(1).into_iter().chain((k + 1 < count).then_some(k + 1)).map(|n| (c, n)));
+    sources.extend((0..lines.len()).filter(|other| *other != c).map(|other| (other, k)));
+    if !lines[c][k].is_optimal() {
+        for line in (c..lines.len()).chain(0..c) {
+            let optimal = |n: &usize| lines[line][*n].is_optimal();
+            sources.extend((0..k).rfind(optimal).into_iter().chain((k + 1..count).find(optimal)).map(|n| (line, n)));
+        }
+    }
+    let (mut better, mut any_fresh) = (false, false);
+    for (line, at) in sources {
+        let Some(theta) = lines[line][at].theta() else { continue };
+        let from = lines[line][at].speed;
+        let point = &lines[c][k];
+        let (criterion, speed) = (point.criterion, point.speed);
+        let name = format!("{} {} {speed} carried to", gait.description().key, criterion.name());
+        let inputs = (common(gait, settings), &point.local_optima, &theta);
+        let (changed, fresh) = step(journal, &name, &inputs, || {
+            let task = Task { gait, criterion, speed };
+            let local = match point.is_optimal() {
+                true => task.follow(&theta, &mut |_| Control::Continue),
+                false => walk(&task, from, &theta),
+            };
+            let mut result = point.clone();
+            result.join(gait, &local).then_some(result)
+        });
+        any_fresh |= fresh;
+        if let Some(changed) = changed {
+            if fresh {
+                journal.point(&changed);
+            }
+            better |= changed.cost != point.cost;
+            lines[c][k] = changed;
+        }
+    }
+    (better, any_fresh)
+}
+
+/// From the optimum of a neighbouring problem at another speed to that of the task, by steps of the speed that lead from optimum to
+/// optimum.
+fn walk(task: &Task, mut from: f64, theta: &[f64]) -> Local {
+    let (whole, mut theta) = (task.speed - from, theta.to_vec());
+    let mut step = whole;
+    loop {
+        let last = step.abs() >= (task.speed - from).abs();
+        let speed = if last { task.speed } else { from + step };
+        let local = Task { speed, ..*task }.follow(&theta, &mut |_| Control::Continue);
+        if local.status.is_optimal() && !last {
+            (from, theta) = (speed, local.theta);
+            continue;
+        }
+        step *= 0.5;
+        if local.status.is_optimal() || step.abs() <= SHORTEST * whole.abs() {
+            return local;
+        }
+    }
+}

@@ -1,0 +1,192 @@
+//! How fast a gait goes: the greatest speed and what ends it, and the nearest speed that works.
+
+use super::atlas::search_at;
+use super::journal::{Journal, common, step};
+use super::local::{Conflict, Local, Task};
+use super::multi_start::{Settings, search, start};
+use piaffe_model::Gait;
+use piaffe_model::motion::Criterion;
+use crate::result::GaitResult;
+use piaffe_sqp::Control;
+use piaffe_model::units::Units;
+use serde::{Deserialize, Serialize};
+
+/// Width to which a limiting speed is bisected, in the robot's unit of speed.
+const BISECTION: f64 = 5e-4;
+/// First step beyond the last speed that works, and where stepping ends, in the same unit.
+const STEP: f64 = 0.06;
+const FASTEST: f64 = 6.0;
+/// Starts at a speed that may have no motion at all, where their number is not given.
+const STARTS: usize = 4;
+
+/// Speeds, each twice as far off as the one before, at which the question is asked again.
+const ATTEMPTS: usize = 8;
+
+/// What ends a gait where motions go on but optima do not.
+const BEYOND: &str = "finding an optimum among the motions that there are";
+
+/// How fast a gait goes.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct MaximumSpeed {
+    /// The greatest speed with a feasible motion, as far as local searches can tell; after [`MaximumSpeed::optima`] one with an optimum.
+    pub speed: f64,
+    /// What conflicts just above it, weightiest first.
+    pub ended_by: Vec<String>,
+    /// A motion at this speed, as variables Θ; of no criterion.
+    theta: Vec<f64>,
+}
+
+/// Steps beyond the fastest of these results, then bisects. `None` if none is an optimum or there is no end.
+pub fn maximum_speed(
+    gait: &dyn Gait,
+    results: &[GaitResult],
+    settings: &Settings,
+    journal: &dyn Journal,
+) -> Option<MaximumSpeed> {
+    let fastest = results.iter().filter(|r| r.is_optimal()).max_by(|a, b| a.speed.total_cmp(&b.speed))?;
+    let from = fastest.theta()?;
+    let name = format!("{} greatest speed", gait.description().key);
+    step(journal, &name, &(common(gait, settings), fastest.speed, &from), || {
+        climb(gait, fastest.speed, &from, settings)
+    })
+    .0
+}
+
+fn climb(gait: &dyn Gait, speed: f64, from: &[f64], settings: &Settings) -> Option<MaximumSpeed> {
+    let mut good = speed;
+    let mut theta = from.to_vec();
+    let mut conflicts: Vec<Conflict> = Vec::new();
+    let mut bad = None;
+    let unit = Units::new(gait.description()).speed();
+    while bad.is_none_or(|b| b - good > BISECTION * unit) {
+        let speed = bad.map_or(good + STEP * unit, |b| 0.5 * (good + b));
+        if speed > FASTEST * unit {
+            return None;
+        }
+        let local = attempt(gait, speed, Some(&theta), settings);
+        if local.status.is_optimal() {
+            good = speed;
+            theta = local.theta;
+        } else {
+            bad = Some(speed);
+            conflicts = local.conflicts;
+        }
+    }
+    // What the speed itself and the cycle demand is the question; the answer is what stands against it.
+    let structural = ["mean speed", "closure of β", "closure of σ", "touchdown height"];
+    conflicts.retain(|c| !structural.contains(&c.label.name.as_str()));
+    conflicts.sort_by(|a, b| b.weight.total_cmp(&a.weight));
+    let ended_by = conflicts.iter().map(|c| format!("{} (half step {})", c.label.name, c.label.half_step)).collect();
+    Some(MaximumSpeed { speed: good, ended_by, theta })
+}
+
+impl MaximumSpeed {
+    /// The optima at the greatest speed. Motions may go on where no optimum is found any more: as long as no criterion has one,
+    /// the speed is lowered towards `known`, at which some has.
+    pub fn optima(
+        &mut self,
+        gait: &dyn Gait,
+        criteria: &[Criterion],
+        known: f64,
+        settings: &Settings,
+        journal: &dyn Journal,
+    ) -> Vec<GaitResult> {
+        while self.speed > known {
+            let optima: Vec<_> = criteria.iter().map(|c| self.optimum(gait, *c, settings, journal)).collect();
+            if optima.iter().any(GaitResult::is_optimal) {
+                return optima;
+            }
+            let slower = 0.5 * (known + self.speed);
+            self.speed =
+                if slower - known > BISECTION * Units::new(gait.description()).speed() { slower } else { known };
+            self.ended_by = vec![BEYOND.into()];
+            let name = format!("{} motion at {}", gait.description().key, self.speed);
+            let slower = || attempt(gait, self.speed, Some(&self.theta), settings).theta;
+            self.theta = step(journal, &name, &(common(gait, settings), &self.theta), slower).0;
+        }
+        Vec::new()
+    }
+
+    fn optimum(&self, gait: &dyn Gait, criterion: Criterion, settings: &Settings, journal: &dyn Journal) -> GaitResult {
+        search_at(gait, criterion, self.speed, settings, std::slice::from_ref(&self.theta), journal).0
+    }
+}
+
+/// A feasible motion at a speed, or the attempt that came closest.
+///
+/// Feasibility does not depend on the criterion; the smooth one is quicker.
+fn attempt(gait: &dyn Gait, speed: f64, from: Option<&[f64]>, settings: &Settings) -> Local {
+    let task = Task { gait, criterion: Criterion::Torque, speed };
+    let of = |theta: &[f64]| task.descend(theta, &mut |_| Control::Continue);
+    let mut best = from.map(|theta| task.follow(theta, &mut |_| Control::Continue));
+    for k in 0..settings.starts.unwrap_or(STARTS) {
+        if best.as_ref().is_some_and(|b| b.status.is_optimal()) {
+            break;
+        }
+        let other = of(&start(gait, Criterion::Torque, speed, settings.seed, k));
+        let better = |b: &Local| other.status.is_optimal() || other.kkt.violation < b.kkt.violation;
+        if best.as_ref().is_none_or(better) {
+            best = Some(other);
+        }
+    }
+    best.unwrap_or_else(|| of(&start(gait, Criterion::Torque, speed, settings.seed, 0)))
+}
+
+/// For a speed without a feasible motion the nearest one at which the same question has an answer, as far as
+/// local searches can tell. Tries speeds ever further off on both sides, then bisects from the motion found; and asks there.
+pub fn nearest_speed(gait: &dyn Gait, criterion: Criterion, speed: f64, settings: &Settings) -> Option<f64> {
+    let few = Settings { starts: Some(settings.starts.unwrap_or(STARTS).min(3)), ..settings.clone() };
+    let none = Settings { starts: Some(0), ..settings.clone() };
+    let unit = Units::new(gait.description()).speed();
+    let (mut slower, mut faster) = (speed, speed);
+    for _ in 0..8 {
+        for (candidate, last) in [(slower / 1.5, slower), (faster * 1.5, faster)] {
+            if candidate > FASTEST * unit {
+                continue;
+            }
+            let found = attempt(gait, candidate, None, &few);
+            if !found.status.is_optimal() {
+                continue;
+            }
+            let (mut good, mut bad, mut theta) = (candidate, last, found.theta);
+            while (bad - good).abs() > BISECTION * unit {
+                let middle = 0.5 * (good + bad);
+                let local = attempt(gait, middle, Some(&theta), &none);
+                if local.status.is_optimal() {
+                    (good, theta) = (middle, local.theta);
+                } else {
+                    bad = middle;
+                }
+            }
+            if let Some(answered) = answered(gait, criterion, [speed, good], settings) {
+                return Some(answered);
+            }
+        }
+        (slower, faster) = (slower / 1.5, faster * 1.5);
+    }
+    None
+}
+
+/// From `good`, or further away from `asked`, the first speed at which a search finds an optimum whose receipt holds, with
+/// nothing known but the question.
+fn answered(gait: &dyn Gait, criterion: Criterion, [asked, good]: [f64; 2], settings: &Settings) -> Option<f64> {
+    let mut distance = good - asked;
+    for _ in 0..ATTEMPTS {
+        let speed = legible(asked + distance, distance > 0.0);
+        if speed > 0.0 && speed != asked {
+            let found = search(gait, criterion, speed, settings, &|_| {});
+            if GaitResult::new(gait, criterion, speed, &found, settings.seed, || 0.0).is_optimal() {
+                return Some(speed);
+            }
+        }
+        distance *= 2.0;
+    }
+    None
+}
+
+/// A positive number with four digits, rounded up or down: what is printed is what was tried.
+fn legible(number: f64, up: bool) -> f64 {
+    let unit = 10f64.powf(number.log10().floor() - 3.0);
+    let digits = if up { (number / unit).ceil() } else { (number / unit).floor() };
+    format!("{:.3e}", digits * unit).parse().unwrap_or(number)
+}

@@ -1,0 +1,323 @@
+//! One local optimum: from a start to a motion that satisfies every constraint between nodes too.
+
+use super::nearest::{nearest, reach};
+use super::refine::dips;
+use crate::cycle::{AT_REST, Cycle, Label, Still, elements};
+use piaffe_model::Gait;
+use piaffe_model::motion::{Costs, Criterion, Motion};
+use piaffe_sqp as sqp;
+use piaffe_sqp::{Control, KktResidual, Options, Solution, Status, multipliers};
+use crate::stance::Undefined;
+
+/// Violation (scaled) that is none.
+const FEASIBILITY: f64 = 1e-8;
+/// Violation between nodes (scaled) at which refinement stops.
+const DENSE: f64 = 1e-7;
+/// Change of an active row between nodes at which it does (see `look`).
+const SETTLED: f64 = 1e-8;
+/// Rounds after which a mesh must do on which they go on changing.
+const PATIENCE: usize = 5;
+const ROUNDS: usize = 20;
+
+/// What is asked for: the cheapest motion of a gait at a mean speed (m/s).
+#[derive(Clone, Copy)]
+pub struct Task<'a> {
+    pub gait: &'a dyn Gait,
+    pub criterion: Criterion,
+    pub speed: f64,
+}
+
+/// Where a descent ended.
+#[derive(Clone, Debug)]
+pub struct Local {
+    pub status: Status,
+    pub theta: Vec<f64>,
+    pub motion: Motion,
+    pub costs: Costs,
+    pub kkt: KktResidual,
+    /// Largest violation (scaled) on the optimizer's own fine grid.
+    pub violation: f64,
+    pub iterations: usize,
+    /// With `Status::Infeasible`: what contradicts what, worst first.
+    pub conflicts: Vec<Conflict>,
+}
+
+impl Local {
+    /// Whether it keeps to all limits, optimum or not.
+    pub fn is_motion(&self) -> bool {
+        self.kkt.violation <= FEASIBILITY && self.violation <= DENSE
+    }
+}
+
+/// A constraint that takes part in a contradiction.
+#[derive(Clone, Debug)]
+pub struct Conflict {
+    pub label: Label,
+    /// By how much it is violated (scaled); 0 for one that holds but is in the way of others.
+    pub violation: f64,
+    /// Its weight in the proof that the violation cannot be reduced.
+    pub weight: f64,
+}
+
+/// The kinks of |power| are rounded off first, by this much in the robot's unit of power: far from the
+/// optimum a kink tells a step more than is true.
+const SMOOTHING: f64 = 0.028;
+
+/// Largest component of the first step from there, in natural sizes of the variables: kinks are known where they are, and
+/// hardly beyond.
+const CAUTION: f64 = 0.05;
+
+/// Joints slower than this, in parts of the fastest joint's rate, may be about to come to rest, where the criterion has kinks.
+const SLOW: f64 = 0.1;
+
+/// Options of the solver for a problem of this kind.
+pub fn options(cycle: &Cycle) -> Options {
+    Options {
+        tolerance: 1e-6,
+        feasibility: FEASIBILITY,
+        iteration_limit: 400,
+        step_limit: 1.0,
+        estimate_multipliers: true,
+        scale: Some(cycle.scale()),
+        ..Options::default()
+    }
+}
+
+/// Options of the solver where an approximate solution will do.
+fn rough(options: &Options) -> Options {
+    Options { tolerance: 5e-2, feasibility: 1e-3, ..options.clone() }
+}
+
+/// Called at every iteration; can stop the search.
+type Observer<'o> = &'o mut dyn FnMut(&sqp::Iteration) -> Control;
+
+impl Task<'_> {
+    /// Minimizes from `start`, which may be far from any motion: the nearest motion first, then an approximate optimum on
+    /// a coarse mesh, then the optimum.
+    pub fn descend(&self, start: &[f64], observe: Observer) -> Local {
+        let coarse = elements(self.gait.description()) / 2;
+        let mut cycle = Cycle::with_elements(self.gait, self.criterion, self.speed, coarse);
+        let options = options(&cycle);
+        let nearest = nearest(&mut cycle, start, &options, observe);
+        let local = self.approach(cycle, &nearest.x, &options, observe);
+        Local { iterations: nearest.iterations + local.iterations, ..local }
+    }
+
+    /// Minimizes from `start` at once and with steps of any length. It gets lost more often than [`Task::descend`], and ends
+    /// in optima that [`Task::descend`] never sees.
+    pub fn plunge(&self, start: &[f64], observe: Observer) -> Local {
+        let cycle = self.cycle();
+        let options = Options { step_limit: f64::INFINITY, ..options(&cycle) };
+        self.approach(cycle, start, &options, observe)
+    }
+
+    /// Minimizes from the optimum of a neighbouring problem: directly, or as from anywhere if that leads nowhere.
+    pub fn follow(&self, start: &[f64], observe: Observer) -> Local {
+        let local = self.carry(start, observe);
+        if matches!(local.status, Status::Optimal | Status::Stopped) {
+            return local;
+        }
+        self.descend(start, observe)
+    }
+
+    /// Minimizes directly from the optimum of a neighbouring problem, and from nowhere else if that leads nowhere.
+    pub fn carry(&self, start: &[f64], observe: Observer) -> Local {
+        self.polish(start, f64::INFINITY, observe)
+    }
+
+    /// The motion nearest to `start` that keeps to all limits, whatever it costs.
+    pub fn nearest_motion(&self, start: &[f64], observe: Observer) -> Local {
+        let mut cycle = self.cycle();
+        let options = options(&cycle);
+        let found = between_nodes(&mut cycle, start, |cycle, theta, _| reach(cycle, theta, &options, observe));
+        finish(&mut cycle, found.solution, found.violation)
+    }
+
+    fn cycle(&self) -> Cycle<'_> {
+        Cycle::new(self.gait, self.criterion, self.speed)
+    }
+
+    /// An approximate optimum of `cycle`, then the optimum.
+    fn approach(&self, mut cycle: Cycle, start: &[f64], options: &Options, observe: Observer) -> Local {
+        let mut first_step_limit = f64::INFINITY;
+        if self.criterion == Criterion::Energy {
+            cycle.smoothing = SMOOTHING;
+            first_step_limit = CAUTION;
+        }
+        let solution = sqp::minimize(&mut cycle, start, &rough(options), observe);
+        let local = self.polish(&solution.x, first_step_limit, observe);
+        Local { iterations: solution.iterations + local.iterations, ..local }
+    }
+
+    /// The optimum near `start`. Where smooth steps lead to none, joints may have to be held still.
+    fn polish(&self, start: &[f64], first_step_limit: f64, observe: Observer) -> Local {
+        // What already holds joints still is an optimum of a neighbouring problem, or near one.
+        let mut held = self.slow(start, AT_REST);
+        let mut iterations = 0;
+        if !held.is_empty() {
+            let local = self.solve(start, &held, CAUTION, observe);
+            if matches!(local.status, Status::Optimal | Status::Stopped) {
+                return local;
+            }
+            iterations += local.iterations;
+        }
+        let mut free = self.solve(start, &[], first_step_limit, observe);
+        iterations += free.iterations;
+        let mut theta = free.theta.clone();
+        while !matches!(free.status, Status::Optimal | Status::Stopped) {
+            let slow = self.slow(&theta, SLOW);
+            if slow.is_empty() || slow == held {
+                break;
+            }
+            held = slow;
+            let local = self.solve(&theta, &held, CAUTION, observe);
+            iterations += local.iterations;
+            theta.clone_from(&local.theta);
+            if matches!(local.status, Status::Optimal | Status::Stopped) {
+                free = local;
+            }
+        }
+        Local { iterations, ..free }
+    }
+
+    /// Joints that hardly move, by this share of the fastest one's rate.
+    fn slow(&self, theta: &[f64], share: f64) -> Vec<Still> {
+        let mut cycle = self.cycle();
+        if self.criterion == Criterion::Energy && cycle.simulate(theta).is_ok() {
+            cycle.still(share)
+        } else {
+            Vec::new()
+        }
+    }
+
+    /// The optimum near `start` with these joints held still, on a mesh that resolves it.
+    fn solve(&self, start: &[f64], still: &[Still], first_step_limit: f64, observe: Observer) -> Local {
+        let mut cycle = self.cycle();
+        cycle.hold(still);
+        let mut found = settle(&mut cycle, start, first_step_limit, observe);
+        while found.solution.status.is_optimal()
+            && let Some(mut finer) = if found.settled { cycle.finer() } else { cycle.twice_as_fine() }
+        {
+            let mut better = settle(&mut finer, &found.solution.x, CAUTION, observe);
+            if !better.solution.status.is_optimal() {
+                // What does not become an optimum there stays what it is: its receipt tells.
+                found.solution.iterations += better.solution.iterations;
+                break;
+            }
+            better.solution.iterations += found.solution.iterations;
+            (found, cycle) = (better, finer);
+        }
+        finish(&mut cycle, found.solution, found.violation)
+    }
+}
+
+/// A solution with constraints imposed between nodes.
+struct Settled {
+    solution: Solution,
+    /// What violation (scaled) is left there.
+    violation: f64,
+    /// Whether the rows between nodes no longer changed.
+    settled: bool,
+}
+
+/// Imposes constraints between nodes where they dip in a solution. Tells what violation (scaled) is there, and by how much rows
+/// that there were have changed: scaled, and where a row's price is high by what that does to the criterion.
+fn look(cycle: &mut Cycle, solution: &Solution) -> Result<(f64, f64), Undefined> {
+    cycle.simulate(&solution.x)?;
+    let found = dips(cycle)?;
+    let multipliers = cycle.dip_multipliers(&solution.inequality_multipliers);
+    let changes = found.impose(cycle)?;
+    let size = solution.objective.abs().max(1.0);
+    let pairs = changes.iter().flatten().zip(multipliers.iter().flatten());
+    let change = pairs.map(|(change, multiplier)| change * (multiplier / size).max(1.0)).fold(0.0, f64::max);
+    Ok((found.violation, change))
+}
+
+/// The optimum near `start`, with constraints imposed between nodes where they dip.
+fn settle(cycle: &mut Cycle, start: &[f64], first_step_limit: f64, observe: Observer) -> Settled {
+    let options = options(cycle);
+    between_nodes(cycle, start, |cycle, theta, round| {
+        let first_step_limit = if round == 0 { first_step_limit } else { f64::INFINITY };
+        sqp::minimize(cycle, theta, &Options { first_step_limit, ..options.clone() }, observe)
+    })
+}
+
+/// What `solve` makes of `start`, again and again with constraints imposed between nodes where they dip.
+///
+/// The rows between nodes are known only at a solution, so it is sought again until they no longer change.
+fn between_nodes(
+    cycle: &mut Cycle,
+    start: &[f64],
+    mut solve: impl FnMut(&mut Cycle, &[f64], usize) -> Solution,
+) -> Settled {
+    let mut solution = solve(cycle, start, 0);
+    let mut last: Option<Settled> = None;
+    for round in 0.. {
+        let Ok((violation, change)) = look(cycle, &solution) else { break };
+        if !solution.status.is_optimal() {
+            // What was found with nearly these rows is better than nothing: its verdict tells.
+            return last.unwrap_or(Settled { solution, violation, settled: true });
+        }
+        let settled = violation <= DENSE && change <= SETTLED;
+        if settled || round == ROUNDS || (violation <= DENSE && round >= PATIENCE) {
+            return Settled { solution, violation, settled };
+        }
+        if violation <= DENSE {
+            last = Some(Settled { solution: solution.clone(), violation, settled });
+        }
+        let iterations = solution.iterations;
+        solution = solve(cycle, &solution.x, round + 1);
+        solution.iterations += iterations;
+    }
+    Settled { solution, violation: f64::INFINITY, settled: true }
+}
+
+fn finish(cycle: &mut Cycle, mut solution: Solution, violation: f64) -> Local {
+    if solution.status.is_optimal() && cycle.held().next().is_some() {
+        // An optimum among motions that hold these joints; whether among all, their power decides.
+        cycle.let_go();
+        let scale = cycle.scale();
+        let kkt = multipliers(cycle, &solution.x, scale).map(|m| m.kkt);
+        match kkt {
+            Ok(kkt) if kkt.optimality() <= options(cycle).tolerance => solution.kkt = kkt,
+            _ => solution.status = Status::NoProgress,
+        }
+    }
+    // The motion and its labels are those of the last point simulated: make that the solution.
+    let defined = cycle.simulate(&solution.x).is_ok();
+    let conflicts = if defined { conflicts(cycle, &solution) } else { Vec::new() };
+    Local {
+        status: if defined { solution.status } else { Status::Undefined },
+        motion: cycle.motion(),
+        costs: cycle.costs(),
+        theta: solution.x,
+        kkt: solution.kkt,
+        violation,
+        iterations: solution.iterations,
+        conflicts,
+    }
+}
+
+fn conflicts(cycle: &Cycle, solution: &Solution) -> Vec<Conflict> {
+    let Some(proof) = &solution.conflict else { return Vec::new() };
+    let mut list: Vec<Conflict> = Vec::new();
+    let mut add = |label: Label, violation: f64, weight: f64| {
+        // Neighbouring instants of one constraint are one participant: its worst.
+        match list.iter_mut().find(|c| c.label.name == label.name && c.label.half_step == label.half_step) {
+            Some(known) if known.violation >= violation => known.weight += weight,
+            Some(known) => *known = Conflict { label, violation, weight: known.weight + weight },
+            None => list.push(Conflict { label, violation, weight }),
+        }
+    };
+    for i in proof.conflicting_equalities() {
+        add(cycle.equality_label(i), solution.values.equalities[i].abs(), proof.equalities[i].abs());
+    }
+    for i in proof.conflicting_inequalities() {
+        add(cycle.label(i), (-solution.values.inequalities[i]).max(0.0), proof.inequalities[i]);
+    }
+    for i in proof.conflicting_bounds() {
+        add(cycle.bound_label(i), 0.0, proof.bounds[i].abs());
+    }
+    list.sort_by(|a, b| b.violation.total_cmp(&a.violation).then(b.weight.total_cmp(&a.weight)));
+    list
+}

@@ -1,0 +1,199 @@
+//! Many starts, all local optima: in parallel, with the same result for any number of threads.
+
+use super::evidence::Effort;
+use super::feasible::motions;
+use super::guess::{Plan, walk};
+use super::local::{Local, Task};
+use crate::cycle::{Cycle, theta};
+use piaffe_model::Gait;
+use piaffe_model::motion::Criterion;
+use piaffe_sqp::{Control, Iteration, Problem, Values};
+use rayon::prelude::*;
+
+/// Costs within this share of each other belong to one optimum, if the motions agree too.
+const SAME_COST: f64 = 1e-5;
+
+/// Starts that run side by side; what they found decides whether more do.
+const BATCH: usize = 8;
+
+/// Walks drawn for each random start of the first batch.
+const DRAWS: usize = 3;
+
+/// Starts after which a search ends whatever it has found.
+const MOST: usize = 64;
+
+/// After the first batch, every start of this many begins near the best optimum so far.
+const HOP: usize = 4;
+
+/// How widely to search.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Number of starts, the first of which is the default walk; by default as many as the evidence asks for.
+    pub starts: Option<usize>,
+    /// Of the random starts.
+    pub seed: u64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings { starts: None, seed: 1 }
+    }
+}
+
+/// What a search found.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// Distinct local optima, best first.
+    pub optima: Vec<Optimum>,
+    /// Of the starts without an optimum, the one that came closest: its conflicts explain why.
+    pub failure: Option<Local>,
+    /// Without an optimum: the cheapest motion within all limits that is known nevertheless.
+    pub motion: Option<Local>,
+    pub effort: Effort,
+}
+
+/// A local optimum and how many starts that knew of none led to it.
+#[derive(Clone, Debug)]
+pub struct Optimum {
+    pub local: Local,
+    pub reached: usize,
+}
+
+/// Where a start ended.
+struct End {
+    local: Local,
+    /// Whether the start was from or near a motion that was known.
+    informed: bool,
+}
+
+/// Searches from several starts. `done(k)` is told when start `k` has ended.
+pub fn search(
+    gait: &dyn Gait,
+    criterion: Criterion,
+    speed: f64,
+    settings: &Settings,
+    done: &(dyn Fn(usize) + Sync),
+) -> Found {
+    search_from(gait, criterion, speed, settings, &[], done)
+}
+
+/// The same, with further starts before those of the settings: optima of neighbouring problems, say.
+pub fn search_from(
+    gait: &dyn Gait,
+    criterion: Criterion,
+    speed: f64,
+    settings: &Settings,
+    neighbours: &[Vec<f64>],
+    done: &(dyn Fn(usize) + Sync),
+) -> Found {
+    let task = Task { gait, criterion, speed };
+    let scale = Cycle::new(gait, criterion, speed).scale();
+    let follow = |theta: &Vec<f64>| End { local: task.follow(theta, &mut |_| Control::Continue), informed: true };
+    let mut ends: Vec<End> = neighbours.par_iter().map(follow).collect();
+    let most = settings.starts.unwrap_or(MOST).max(1);
+    for first in (0..most).step_by(BATCH) {
+        let so_far = collect(criterion, &scale, &ends);
+        if settings.starts.is_none() && so_far.effort.is_enough() {
+            break;
+        }
+        let best = so_far.optima.first().filter(|_| first > 0);
+        let batch = (first..most.min(first + BATCH)).into_par_iter().map(|k| {
+            let end = begin(&task, settings.seed, k, best);
+            done(k);
+            end
+        });
+        ends.par_extend(batch);
+    }
+    let found = collect(criterion, &scale, &ends);
+    if !found.optima.is_empty() {
+        return found;
+    }
+    // Descents may fail where there are motions: from these they have no limit to find their way to.
+    let known = motions(&task, settings.seed, found.effort.starts);
+    let thetas: Vec<Vec<f64>> = known.iter().map(|local| local.theta.clone()).collect();
+    ends.par_extend(thetas.par_iter().map(follow));
+    let mut found = collect(criterion, &scale, &ends);
+    if found.optima.is_empty() {
+        let cheapest = |a: &Local, b: &Local| a.costs.of(criterion).total_cmp(&b.costs.of(criterion));
+        // Where a descent got lost is a motion by its own account only.
+        let lost = || ends.iter().map(|e| e.local.clone()).filter(Local::is_motion).min_by(cheapest);
+        found.motion = known.into_iter().min_by(cheapest).or_else(lost);
+    }
+    found
+}
+
+/// The k-th start of a seed, and where it leads.
+fn begin(task: &Task, seed: u64, k: usize, best: Option<&Optimum>) -> End {
+    let observe = &mut |_: &Iteration| Control::Continue;
+    if let (Some(best), 0) = (best, k % HOP) {
+        return End { local: task.descend(&hop(task, seed, k, &best.local.theta), observe), informed: true };
+    }
+    let theta = start(task.gait, task.criterion, task.speed, seed, k);
+    // Every second start plunges: what is found must not depend on one way of beginning.
+    let way = if k % 2 == 1 { Task::plunge } else { Task::descend };
+    End { local: way(task, &theta, observe), informed: false }
+}
+
+/// The k-th start of a seed: the default walk, then random ones.
+pub fn start(gait: &dyn Gait, criterion: Criterion, speed: f64, seed: u64, k: usize) -> Vec<f64> {
+    if k == 0 {
+        return theta(&walk(gait, &Plan::default_for(gait.description()), speed));
+    }
+    let mut rng = stream(seed, k);
+    // Of a few walks, the one that comes closest to satisfying the constraints is the safest start. But the safest lead to the
+    // same few optima, so later starts take what comes.
+    let draws = if k < BATCH { DRAWS } else { 1 };
+    let mut cycle = Cycle::new(gait, criterion, speed);
+    let mut values = Values::zeros(cycle.equalities(), cycle.inequalities());
+    let drawn = (0..draws).map(|_| {
+        let theta = theta(&walk(gait, &Plan::random(gait, &mut rng), speed));
+        let violation = cycle.evaluate(&theta, &mut values).map_or(f64::INFINITY, |()| values.violation());
+        (violation, theta)
+    });
+    drawn.min_by(|a, b| a.0.total_cmp(&b.0)).map_or_else(Vec::new, |(_, theta)| theta)
+}
+
+/// A random motion near `theta`: every variable moves by up to its natural size.
+fn hop(task: &Task, seed: u64, k: usize, theta: &[f64]) -> Vec<f64> {
+    let mut rng = stream(seed, k);
+    let scale = Cycle::new(task.gait, task.criterion, task.speed).scale();
+    theta.iter().zip(scale).map(|(x, scale)| x + scale * (2.0 * rng.f64() - 1.0)).collect()
+}
+
+/// Random numbers of the k-th start.
+fn stream(seed: u64, k: usize) -> fastrand::Rng {
+    // Streams of neighbouring seeds must not overlap: mix seed and number.
+    fastrand::Rng::with_seed(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ k as u64)
+}
+
+fn collect(criterion: Criterion, scale: &[f64], ends: &[End]) -> Found {
+    let (mut good, mut bad): (Vec<&End>, Vec<&End>) = ends.iter().partition(|e| e.local.status.is_optimal());
+    // Stable sorts: ties keep the order of the starts.
+    good.sort_by(|a, b| a.local.costs.of(criterion).total_cmp(&b.local.costs.of(criterion)));
+    // A proof of infeasibility explains more than a search that got lost.
+    let unproven = |e: &End| e.local.conflicts.is_empty();
+    bad.sort_by(|a, b| unproven(a).cmp(&unproven(b)).then(a.local.kkt.violation.total_cmp(&b.local.kkt.violation)));
+    let mut optima: Vec<Optimum> = Vec::new();
+    for End { local, informed } in good {
+        let reached = usize::from(!informed);
+        match optima.iter_mut().find(|o| same(criterion, scale, &o.local, local)) {
+            Some(known) => known.reached += reached,
+            None => optima.push(Optimum { local: local.clone(), reached }),
+        }
+    }
+    let starts = ends.iter().filter(|e| !e.informed).count();
+    let successes = optima.iter().map(|o| o.reached).sum();
+    let effort = Effort { starts, successes, informed: ends.len() - starts, optima: optima.len() };
+    Found { optima, failure: bad.first().map(|e| e.local.clone()), motion: None, effort }
+}
+
+/// How near two motions of one optimum are, in natural sizes of the variables.
+const SAME_MOTION: f64 = 0.2;
+
+/// Whether both are one optimum; `scale` are the natural sizes of the variables.
+fn same(criterion: Criterion, scale: &[f64], a: &Local, b: &Local) -> bool {
+    let (ca, cb) = (a.costs.of(criterion), b.costs.of(criterion));
+    let apart =
+        a.theta.iter().zip(&b.theta).zip(scale).map(|((x, y), scale)| (x - y).abs() / scale).fold(0.0, f64::max);
+    (ca - cb).abs() <= SAME_COST * ca.abs().max(cb.abs()) && apart < SAME_MOTION
+}

@@ -1,0 +1,221 @@
+//! ∂L/∂p with Θ and the multipliers kept: L = f − λᵀc_E − μᵀc_I − νᵀ(Θ − bounds), every function of it as the nonlinear program has it.
+//! f is the criterion per metre but for a factor, which the speed is part of and no other number.
+//!
+//! Numbers of the robot change the impacts, with them the velocities and the momentum at the beginning of each half step, and β
+//! along it. The end of a half step is part of Θ. A row of L at a dip between nodes is the quartic through the nodes, as in the
+//! program; the dip's motion does not matter (envelope theorem). Joints at rest do not stay so when numbers change: the criterion's
+//! subgradient there is part of L.
+
+use crate::constraints::{ImpactConstraints, Limits, path_constraints_of};
+use crate::cycle::{CLOSURE, Place, renamed};
+use crate::instant::{Quantities, direction};
+use piaffe_model::{Description, Lever};
+use piaffe_model::motion::{HalfStep, Motion};
+use piaffe_number::{Dual, Scalar};
+use crate::optimality::Linearized;
+use piaffe_verify::impact::{Impact, impact_of};
+use piaffe_verify::instants::State;
+use piaffe_verify::multibody::Multibody;
+use piaffe_verify::numbers::Numbers;
+use piaffe_verify::phase::Phase;
+use num_traits::Zero;
+
+/// Parameters that are taken together.
+pub const LANES: usize = 8;
+
+type Number = Dual<f64, LANES>;
+
+/// The Lagrangian of an optimum as a function of parameters.
+pub struct Slopes<'a> {
+    linearized: &'a Linearized<'a>,
+    motion: &'a Motion,
+    d: &'a Description,
+}
+
+/// What happens at the end of a half step.
+struct Landing {
+    impact: Impact<Number>,
+    /// Of the foot that lands, over the stance foot.
+    height: Number,
+}
+
+impl<'a> Slopes<'a> {
+    pub fn new(linearized: &'a Linearized, motion: &'a Motion) -> Slopes<'a> {
+        Slopes { linearized, motion, d: linearized.cycle.description() }
+    }
+
+    /// The slope in the mean speed, which enters one equation, and divides the criterion.
+    pub fn in_speed(&self) -> f64 {
+        let Linearized { cycle, multipliers, .. } = self.linearized;
+        let through_equation = self.speed_multiplier() * cycle.asked_travel() / cycle.units().length;
+        let through_division = -multipliers.values.objective;
+        cycle.criterion_per_objective() * (through_equation + through_division) / cycle.speed
+    }
+
+    /// That of the equation of the mean speed.
+    fn speed_multiplier(&self) -> f64 {
+        self.linearized.multipliers.equalities[self.linearized.cycle.speed_equation()]
+    }
+
+    /// The slopes along levers, [`LANES`] at most. `None` if the motion cannot be followed.
+    pub fn along(&self, levers: &[Lever]) -> Option<[f64; LANES]> {
+        let (d, m) = (self.d, &self.linearized.multipliers);
+        let mut numbers: Vec<Number> = d.numbers().into_iter().map(Number::constant).collect();
+        for (lane, lever) in levers.iter().enumerate() {
+            for (number, slope) in lever.slopes {
+                numbers.get_mut(*number)?.d[lane] = *slope;
+            }
+        }
+        let numbers = Numbers::of(d, numbers);
+        let limits =
+            Limits::along(d, &std::array::from_fn(|lane| d.direction(levers.get(lane).map_or(&[], |l| l.slopes))));
+        let landings = (0..d.phases()).map(|k| self.landing(&numbers, k)).collect::<Option<Vec<_>>>()?;
+
+        let units = self.linearized.cycle.units();
+        let mut lagrangian = Number::zero();
+        let (mut travel, impact) = (Number::zero(), ImpactConstraints::with(d, limits.friction));
+        for (k, landing) in landings.iter().enumerate() {
+            let before = (k + d.phases() - 1) % d.phases();
+            lagrangian += self.half_step(&numbers, &limits, k, &landings[before].impact, &mut travel)?;
+            lagrangian -= landing.height.scale(m.equalities[CLOSURE * k + 2] / units.length);
+            let end = [&landing.impact.impulse.as_slice()[..d.positions()], &[landing.impact.leaving.y]].concat();
+            for (i, multiplier) in self.priced() {
+                if let Place::Impact { phase, constraint } = self.linearized.cycle.place(i)
+                    && phase == k
+                {
+                    lagrangian -= impact.value(constraint, &end).scale(multiplier);
+                }
+            }
+            let bounds = self.motion.half_steps.len();
+            let own = m.bounds.len() / bounds;
+            let nu = m.bounds[(k + 1) * own - 1];
+            lagrangian += limits.half_step_duration[usize::from(nu < 0.0)].scale(nu);
+        }
+        lagrangian -= travel.scale(self.speed_multiplier() / units.length);
+        let criterion = self.linearized.cycle.criterion_per_objective();
+        Some(lagrangian.d.map(|slope| criterion * slope))
+    }
+
+    /// Inequalities with a multiplier.
+    fn priced(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.linearized
+            .multipliers
+            .inequalities
+            .iter()
+            .copied()
+            .enumerate()
+            .filter(|(_, multiplier)| *multiplier != 0.0)
+    }
+
+    /// The landing that ends half step `k`, where Θ has it.
+    fn landing(&self, numbers: &Numbers<Number>, k: usize) -> Option<Landing> {
+        let (d, h) = (self.d, &self.motion.half_steps[k]);
+        let stance = self.linearized.cycle.stance_leg(k);
+        let landing = 1 - stance;
+        let constants = |values: Vec<f64>| -> Vec<Number> { values.into_iter().map(Number::constant).collect() };
+        let q = constants(d.complete(&h.q_final, h.beta_final));
+        let qd = constants(d.complete(&h.qd_final, h.betad_final));
+        let mut multibody = Multibody::with(d, numbers.clone());
+        let impact = impact_of(&mut multibody, landing, &q, &qd)?;
+        let height = multibody.foot(landing).position.y - multibody.foot(stance).position.y;
+        Some(Landing { impact, height })
+    }
+
+    /// Its part of L, but for its landing; adds to the travel.
+    fn half_step(
+        &self,
+        numbers: &Numbers<Number>,
+        limits: &Limits<Number>,
+        k: usize,
+        impact: &Impact<Number>,
+        travel: &mut Number,
+    ) -> Option<Number> {
+        let (d, cycle, m) = (self.d, &self.linearized.cycle, &self.linearized.multipliers);
+        let mut half_step: HalfStep<Number> = self.motion.half_steps[k].cast();
+        let rates = &impact.after[d.positions()..];
+        let rate = |index: usize| {
+            let (from, sign) = renamed(d, index);
+            rates[from].scale(sign)
+        };
+        half_step.qd_initial = (0..d.prescribed()).map(|j| rate(d.prescribed_index(j))).collect();
+        half_step.betad_initial = rate(d.unactuated);
+        let duration = self.motion.half_steps[k].duration;
+        let mut phase = Phase::with(d, numbers.clone(), &half_step, cycle.stance_leg(k), k + 1).ok()?;
+
+        // β and σ at the end: these numbers change σ(q, q̇) of the wanted end and of the motion's alike.
+        let [beta, betad] = phase.beta_end();
+        let by_beta = self.momentum_at_end(k);
+        let mut lagrangian = -beta.scale(m.equalities[CLOSURE * k]);
+        lagrangian -= (beta.scale(by_beta[0]) + betad.scale(by_beta[1]))
+            .scale(m.equalities[CLOSURE * k + 1] / cycle.units().angular_momentum());
+
+        // What is weighted at an instant: quantities of the criterion, constraints.
+        let last = cycle.last_node(k);
+        let mut weights = vec![Vec::new(); last + 1];
+        cycle.objective_partials(k).for_each(|(node, quantity, weight)| weights[node].push((quantity, weight)));
+        for ((_, joint, node), multiplier) in cycle.resting().zip(&m.kinks).filter(|((phase, ..), _)| *phase == k) {
+            weights[node].push((Quantities::new(d).rate(joint), -multiplier));
+        }
+        let mut rows = vec![Vec::new(); last + 1];
+        for (i, multiplier) in self.priced() {
+            if let Place::Instant { phase, constraint, .. } = cycle.place(i)
+                && phase == k
+            {
+                cycle
+                    .row_nodes(i)
+                    .into_iter()
+                    .for_each(|(node, part)| rows[node].push((constraint, multiplier * part)));
+            }
+        }
+        let constraints = path_constraints_of(d, limits);
+        let mut state = State::new(d);
+        for (node, (weights, rows)) in weights.iter().zip(&rows).enumerate() {
+            let share = cycle.instant(k, node);
+            phase.at(share * duration, &mut state).ok()?;
+            let y = quantities(d, &state, share, duration);
+            for (quantity, weight) in weights {
+                lagrangian += y[*quantity].scale(*weight);
+            }
+            for (constraint, multiplier) in rows {
+                lagrangian -= constraints[*constraint].value(&y).scale(*multiplier);
+            }
+            if node == 0 {
+                *travel -= state.platform.x;
+            } else if node == last {
+                *travel += state.platform.x;
+            }
+        }
+        Some(lagrangian)
+    }
+
+    /// ∂σ/∂β and ∂σ/∂β̇ at the end of half step `k`.
+    fn momentum_at_end(&self, k: usize) -> [f64; 2] {
+        let (d, h) = (self.d, &self.motion.half_steps[k]);
+        let nq = d.orientations();
+        let mut momentum = vec![0.0; 1 + 2 * nq];
+        let (q, qd) = (d.complete(&h.q_final, h.beta_final), d.complete(&h.qd_final, h.betad_final));
+        let cycle = &self.linearized.cycle;
+        cycle.gait().momentum(cycle.stance_leg(k), &q, &qd, &mut momentum);
+        [momentum[1 + d.unactuated], momentum[1 + nq + d.unactuated]]
+    }
+}
+
+/// The quantities of an instant, in the order of [`Quantities`].
+fn quantities(d: &Description, state: &State<Number>, share: f64, duration: f64) -> Vec<Number> {
+    let (y, joints) = (Quantities::new(d), d.joints());
+    let mut values = vec![Number::zero(); y.len()];
+    values[..joints].copy_from_slice(&state.torques);
+    values[y.force(0)..][..d.positions()].copy_from_slice(&state.force.as_slice()[..d.positions()]);
+    values[y.angle(0)..][..joints].copy_from_slice(&state.q[..joints]);
+    values[y.rate(0)..][..joints].copy_from_slice(&state.qd[..joints]);
+    values[y.height()] = state.platform.y;
+    for (value, point) in values[y.heights()].iter_mut().zip(d.lowest) {
+        *value = state.heights[*point];
+    }
+    values[y.clearance()] = if share <= 0.0 || share >= 1.0 {
+        state.swing_velocity.y.scale(direction(usize::from(share >= 1.0)) * duration)
+    } else {
+        state.swing.y.scale(0.25 / (share * (1.0 - share)))
+    };
+    values
+}

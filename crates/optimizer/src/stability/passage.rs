@@ -1,0 +1,188 @@
+//! A half step of the gait and the landing that ends it, with what small deviations need to know of them.
+
+use crate::cycle::{elements, renamed, stance_leg};
+use piaffe_model::Gait;
+use piaffe_model::motion::{HalfStep, Motion};
+use piaffe_sqp::dot;
+use crate::stance::{self, Layout, Mesh, Stance, Undefined};
+
+/// Intervals per half step at whose ends the motion is looked at.
+const INSTANTS: usize = 500;
+
+/// One half step, from just after a landing to just after the next one.
+pub struct Passage {
+    pub leg: usize,
+    pub duration: f64,
+    /// ∂(β, σ) at the end by (β, σ) at the beginning: rows β, σ.
+    pub flow: [[f64; 2]; 2],
+    /// Instants in order of time.
+    pub instants: Vec<Instant>,
+    /// The landing, before the legs swap names.
+    pub landing: Landing,
+    /// The beginning of the half step that follows.
+    pub next: Start,
+}
+
+/// The state at an instant.
+#[derive(Clone, Debug, Default)]
+pub struct State {
+    pub q: Vec<f64>,
+    pub qd: Vec<f64>,
+    pub qdd: Vec<f64>,
+}
+
+/// One instant of the motion.
+pub struct Instant {
+    /// s.
+    pub time: f64,
+    pub state: State,
+    pub sigma: f64,
+}
+
+/// The end of a half step: the state before the impact, and the impact's derivatives.
+pub struct Landing {
+    /// With q̈.
+    pub state: State,
+    /// ∂β̇/∂β and ∂β̇/∂σ where Q and Q̇ are kept.
+    pub betad: [f64; 2],
+    /// ∂(height of the landing foot)/∂q, m/rad.
+    pub height: Vec<f64>,
+    /// ∂q̇⁺/∂(q, q̇⁻), a row for each of q̇⁺.
+    impact: Vec<f64>,
+}
+
+/// The beginning of a half step, on its own leg and with its own names.
+pub struct Start {
+    pub qd: Vec<f64>,
+    pub sigma: f64,
+    /// Moment of gravity, N·m.
+    pub sigmad: f64,
+    /// ∂σ/∂q and ∂σ/∂q̇; the latter's entry of β is f1.
+    pub by_q: Vec<f64>,
+    pub by_qd: Vec<f64>,
+}
+
+impl Passage {
+    /// Half step `k` of a motion.
+    ///
+    /// # Errors
+    /// If the equations admit no such motion.
+    pub fn new(gait: &dyn Gait, motion: &Motion, k: usize) -> Result<Passage, Undefined> {
+        let d = gait.description();
+        let next = (k + 1) % motion.half_steps.len();
+        let leg = stance_leg(d, k);
+        let half_step = &motion.half_steps[k];
+        let mesh = Mesh::new(elements(d), d.polynomial_order);
+        let layout = Layout::new(d, &mesh.basis);
+        let parameters = parameters(gait, half_step, leg, &layout);
+        let mut stance = Stance::new(d, &mesh, leg);
+        stance.integrate(gait, leg, &mesh, &parameters)?;
+        stance.differentiate(gait, leg, &mesh, &parameters);
+        let last = mesh.nodes.len() - 1;
+        let row = |of: &[f64]| [layout.beta(), layout.sigma()].map(|p| of[last * layout.len() + p]);
+
+        let mut at = stance::State::new(d, leg);
+        let mut instant = |share: f64| {
+            stance.at(gait, leg, &mesh, &parameters, share, &mut at)?;
+            let state = State { q: at.q.clone(), qd: at.qd.clone(), qdd: acceleration(gait, leg, &at) };
+            Ok(Instant { time: share * half_step.duration, state, sigma: at.sigma })
+        };
+        let instants: Result<Vec<Instant>, Undefined> =
+            (0..=INSTANTS).map(|i| instant(i as f64 / INSTANTS as f64)).collect();
+        let instants = instants?;
+        let (by_beta, by_sigma, _) = stance.partials(last);
+        Ok(Passage {
+            leg,
+            duration: half_step.duration,
+            flow: [row(&stance.beta_p), row(&stance.sigma_p)],
+            landing: Landing::new(gait, leg, instant(1.0)?.state, [by_beta, by_sigma]),
+            instants,
+            next: Start::new(gait, &motion.half_steps[next], stance_leg(d, next)),
+        })
+    }
+
+    /// The state at its beginning.
+    pub fn beginning(&self) -> &Instant {
+        &self.instants[0]
+    }
+
+    /// The state at its end, before the impact.
+    pub fn end(&self) -> &Instant {
+        &self.instants[self.instants.len() - 1]
+    }
+}
+
+/// Local parameters of a half step: see `stance`.
+fn parameters(gait: &dyn Gait, h: &HalfStep, leg: usize, layout: &Layout) -> Vec<f64> {
+    let mut parameters = vec![0.0; layout.len()];
+    for j in 0..layout.prescribed {
+        let own = &mut parameters[layout.joint(j, 0)..][..layout.per_joint];
+        let interior = h.q_interior.iter().map(|values| values[j]);
+        let values = [h.q_initial[j], h.qd_initial[j]].into_iter().chain(interior).chain([h.q_final[j], h.qd_final[j]]);
+        own.iter_mut().zip(values).for_each(|(own, value)| *own = value);
+    }
+    parameters[layout.duration()] = h.duration;
+    parameters[layout.beta()] = h.beta_initial;
+    parameters[layout.sigma()] = Start::new(gait, h, leg).sigma;
+    parameters
+}
+
+impl Landing {
+    fn new(gait: &dyn Gait, leg: usize, state: State, betad: [f64; 2]) -> Landing {
+        let d = gait.description();
+        let (nq, nc) = (d.orientations(), d.positions());
+        let mut placement = vec![0.0; 2 * nc + 2 * nc * nq];
+        gait.placement(leg, &state.q, &mut placement);
+        let mut touchdown = vec![0.0; nq + nc + 2 + (nq + nc + 2) * 2 * nq];
+        gait.touchdown(1 - leg, &state.q, &state.qd, &mut touchdown);
+        Landing {
+            height: placement[2 * nc + nc * nq + nq..][..nq].to_vec(),
+            impact: touchdown[nq + nc + 2..][..2 * nq * nq].to_vec(),
+            state,
+            betad,
+        }
+    }
+
+    /// What a change of (q, q̇⁻) does to q̇⁺.
+    pub fn impact(&self, by_q: &[f64], by_qd: &[f64]) -> Vec<f64> {
+        let rows = self.impact.chunks(2 * by_q.len());
+        rows.map(|row| dot(&row[..by_q.len()], by_q) + dot(&row[by_q.len()..], by_qd)).collect()
+    }
+
+    /// Speed at which the foot comes down, m/s; negative.
+    pub fn speed(&self) -> f64 {
+        dot(&self.height, &self.state.qd)
+    }
+}
+
+impl Start {
+    fn new(gait: &dyn Gait, h: &HalfStep, leg: usize) -> Start {
+        let d = gait.description();
+        let nq = d.orientations();
+        let (q, qd) = (d.complete(&h.q_initial, h.beta_initial), d.complete(&h.qd_initial, h.betad_initial));
+        let mut momentum = vec![0.0; 1 + 2 * nq];
+        gait.momentum(leg, &q, &qd, &mut momentum);
+        let mut terms = [0.0; 5];
+        gait.momentum_terms(leg, &q, &qd, &mut terms);
+        let (by_q, by_qd) = (momentum[1..1 + nq].to_vec(), momentum[1 + nq..].to_vec());
+        Start { qd, sigma: momentum[0], sigmad: terms[4], by_q, by_qd }
+    }
+}
+
+/// Values of all coordinates with the names that they have in the next half step.
+pub fn with_next_names(gait: &dyn Gait, values: &[f64]) -> Vec<f64> {
+    let name = |k| {
+        let (from, sign) = renamed(gait.description(), k);
+        sign * values[from]
+    };
+    (0..values.len()).map(name).collect()
+}
+
+/// q̈, with β̈ by eq. 10.
+fn acceleration(gait: &dyn Gait, leg: usize, at: &stance::State) -> Vec<f64> {
+    let d = gait.description();
+    let (nc, nq) = (d.positions(), d.orientations());
+    let mut inverse = vec![0.0; 2 * nc + nq + d.joints()];
+    gait.inverse(leg, &at.q, &at.qd, &at.prescribed[2], &mut inverse);
+    inverse[nc..nc + nq].to_vec()
+}

@@ -1,0 +1,141 @@
+//! Joints that follow functions of a phase (virtual constraints).
+//!
+//! Kept perfectly, they leave the robot its path and one freedom: how fast it moves along it. With the gait's own time τ as
+//! coordinate of the path, σ = σ*(τ) τ̇, where σ* is that of the gait, and with the same moment of gravity as there,
+//!
+//! ```text
+//! d(σ²/2)/dτ = d(σ*²/2)/dτ:    σ²/2 − σ*²/2 is kept along a half step
+//! ```
+//!
+//! Impacts are linear in the velocities and keep the path, so σ⁺/σ⁻ is that of the gait. Hence (σ² − σ*²)/2 is multiplied,
+//! from step to step, by
+//!
+//! ```text
+//! Π (σ*(0)/σ*(T))²  over the half steps
+//! ```
+//!
+//! The gait recovers exactly if gravity speeds it up between landings, which take from its momentum what gravity has given.
+//! Nothing of this holds where σ* vanishes inside a half step: there all velocities along the path have the same σ.
+
+use super::halving;
+use super::passage::{Instant, Passage};
+use piaffe_model::{Gait, Rotation};
+use serde::{Deserialize, Serialize};
+
+/// The return map of the speed along the path, or why there is none.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum PhaseTracking {
+    Map {
+        /// A quantity of the posture that grows all the time, and so can serve as the phase.
+        phase: String,
+        /// What a deviation of σ² is multiplied by, from step to step.
+        factor: f64,
+        /// Steps until a deviation is halved; none if it grows.
+        steps_to_halve: Option<f64>,
+        /// Slowest entry into the first half step, as a share of the gait's speed there, from which the robot does not fall
+        /// back in this step.
+        slowest_entry: f64,
+    },
+    /// The momentum about the stance foot vanishes here: no tracking of all joints by a phase of the posture gets across with
+    /// another speed than the gait's.
+    Singular {
+        /// 1-based.
+        half_step: usize,
+        /// s.
+        time: f64,
+    },
+    /// No quantity that is looked at grows all the time.
+    NoPhase,
+}
+
+impl PhaseTracking {
+    /// From the half steps that define the gait, of which a step is `repeats` rounds.
+    pub fn new(gait: &dyn Gait, passages: &[Passage], repeats: usize) -> PhaseTracking {
+        if let Some((half_step, time)) = passages.iter().enumerate().find_map(|(k, p)| Some((k + 1, vanishing(p)?))) {
+            return PhaseTracking::Singular { half_step, time };
+        }
+        let Some(phase) = phase(gait, passages) else { return PhaseTracking::NoPhase };
+        // (σ² − σ*²)/2 in terms of that at the entry; the robot falls back where it takes σ² below zero.
+        let (mut factor, mut most) = (1.0, f64::INFINITY);
+        for passage in (0..repeats).flat_map(|_| passages) {
+            let least = passage.instants.iter().map(|i| energy(i.sigma)).fold(f64::INFINITY, f64::min);
+            most = most.min(least / factor);
+            factor *= energy(passage.beginning().sigma) / energy(passage.end().sigma);
+        }
+        let entry = passages.first().map_or(0.0, |p| energy(p.beginning().sigma));
+        PhaseTracking::Map {
+            phase,
+            factor,
+            steps_to_halve: halving(factor),
+            slowest_entry: (1.0 - most / entry).max(0.0).sqrt(),
+        }
+    }
+}
+
+/// σ²/2.
+fn energy(sigma: f64) -> f64 {
+    0.5 * sigma * sigma
+}
+
+/// When σ changes its sign.
+fn vanishing(passage: &Passage) -> Option<f64> {
+    passage.instants.windows(2).find_map(|w| match w {
+        [a, b] if a.sigma * b.sigma <= 0.0 => Some(a.time + (b.time - a.time) * a.sigma / (a.sigma - b.sigma)),
+        _ => None,
+    })
+}
+
+/// How fast a quantity of the posture changes.
+type Rate<'a> = dyn Fn(&Passage, &Instant) -> f64 + 'a;
+
+/// The first quantity that grows all the time, by name.
+fn phase(gait: &dyn Gait, passages: &[Passage]) -> Option<String> {
+    let d = gait.description();
+    let free = d.joints.get(d.unactuated).map_or(
+        match d.rotation {
+            Rotation::Roll => "roll of the platform",
+            _ => "pitch of the platform",
+        },
+        |joint| joint.name,
+    );
+    let turning = |p: &Passage, i: &Instant| {
+        let [at, rate] = platform(gait, p.leg, i);
+        at[1] * rate[0] - at[0] * rate[1]
+    };
+    let rates: [(&str, &Rate); 4] = [
+        ("forward position of the platform from the stance foot", &|p, i| platform(gait, p.leg, i)[1][0]),
+        ("forward position of the mass centre from the stance foot", &|p, i| mass_centre_speed(gait, p.leg, i)),
+        ("angle of the line from the stance foot to the platform", &turning),
+        (free, &|_, i| i.state.qd[d.unactuated]),
+    ];
+    let grows = |rate: &Rate| {
+        let mut all = passages.iter().flat_map(|p| p.instants.iter().map(|i| rate(p, i)));
+        let forward = all.next().unwrap_or(0.0) > 0.0;
+        all.all(|rate| if forward { rate > 0.0 } else { rate < 0.0 })
+    };
+    rates.iter().find(|(_, rate)| grows(rate)).map(|(name, _)| (*name).into())
+}
+
+/// Platform's mass centre from the stance foot and its velocity, forward and up; m, m/s.
+fn platform(gait: &dyn Gait, leg: usize, i: &Instant) -> [[f64; 2]; 2] {
+    let d = gait.description();
+    let (nq, nc) = (d.orientations(), d.positions());
+    let mut placement = vec![0.0; 2 * nc + 2 * nc * nq];
+    gait.placement(leg, &i.state.q, &mut placement);
+    let mut velocity = vec![0.0; nc];
+    gait.platform_velocity(leg, &i.state.q, &i.state.qd, &mut velocity);
+    [[placement[0], placement[1]], [velocity[0], velocity[1]]]
+}
+
+/// Forward speed of the robot's mass centre, m/s.
+fn mass_centre_speed(gait: &dyn Gait, leg: usize, i: &Instant) -> f64 {
+    let d = gait.description();
+    let nc = d.positions();
+    let whole = |[p, q]: [&[f64]; 2]| [p, q].concat();
+    let mut velocity = vec![0.0; nc];
+    gait.platform_velocity(leg, &i.state.q, &i.state.qd, &mut velocity);
+    let mut centre = vec![0.0; 2 * nc];
+    gait.centre_of_mass(&whole([&vec![0.0; nc], &i.state.q]), &whole([&velocity, &i.state.qd]), &mut centre);
+    centre[nc]
+}

@@ -1,0 +1,40 @@
+//! What to change to lower the criterion: the slopes of the optimum, ranked.
+
+use super::number::{digits, given};
+use piaffe_optimizer::result::GaitResult;
+use piaffe_optimizer::sensitivity::Sensitivity;
+use maud::{Markup, html};
+
+/// Rows that are shown at once.
+const SHOWN: usize = 12;
+
+pub fn section(r: &GaitResult) -> Markup {
+    let Some(sensitivities) = &r.sensitivities else { return html! {} };
+    let (effective, idle): (Vec<_>, Vec<_>) = sensitivities.slopes.iter().partition(|s| s.slope != 0.0);
+    let unit = r.criterion.unit();
+    html! {
+        div.receipt {
+            h3 { "What to change" }
+            p { "How the least " (r.criterion.name()) " moves with every number of the specification, as the motion adapts. Numbers that must stay alike for the gait (in braces) change together, by the same share. The elasticity is in percent of the criterion per percent of the number; where it is negative, a larger number, farther from zero, is better." }
+            div.scroll { table {
+                thead { tr { th { "number" } th.n { "value" } th.n { "elasticity" } th.n { "slope" } } }
+                tbody { @for s in effective.iter().take(SHOWN) { (row(s, unit)) } }
+            } }
+            @if effective.len() > SHOWN {
+                details { summary { "Smaller ones" } div.scroll { table { tbody { @for s in &effective[SHOWN..] { (row(s, unit)) } } } } }
+            }
+            @if !idle.is_empty() { p.note { (idle.len()) " more numbers, limits with room to spare most of all, have no influence here." } }
+            @if !sensitivities.one_sided.is_empty() {
+                p.note { "Active without a price, so that slopes may hold to one side only: " (sensitivities.one_sided.join(", ")) "." }
+            }
+        }
+    }
+}
+
+fn row(s: &Sensitivity, unit: &str) -> Markup {
+    let per = if s.unit.is_empty() { String::new() } else { format!(" per {}", s.unit) };
+    html! {
+        tr { td { (s.parameter) } td.n { (given(s.value)) " " (s.unit) }
+            td.n { b { (digits(s.elasticity, 4)) } } td.n { (digits(s.slope, 4)) " " (unit) (per) } }
+    }
+}

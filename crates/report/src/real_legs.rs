@@ -1,0 +1,106 @@
+//! The real legs: what each foot carries, how much room is left, and the verdict in words.
+
+use super::figure::Figure;
+use super::ink::Ink;
+use super::number::{digits, given};
+use super::plot::{Curve, Limit, Plot};
+use super::scale::domain;
+use super::scene::{Dash, Xy};
+use super::subject::{Subject, spaced};
+use piaffe_optimizer::four_legs::{Instant, Lift, RealLegs, Verdict, Worst};
+use piaffe_model::motion::Criterion;
+use maud::{Markup, html};
+
+/// Intervals per half step with which curves are drawn.
+const INTERVALS: usize = 120;
+
+/// Vertical load and use of friction of every real foot, and the least margin over time; none where nothing is known.
+pub fn figures(s: &Subject) -> Vec<Figure> {
+    let lift = Lift::even(s.gait, &s.motion, INTERVALS).ok().filter(|_| s.result.real_legs.is_some());
+    lift.map_or(Vec::new(), |lift| vec![loads(s, &lift), friction(s, &lift), margin(s, &lift)])
+}
+
+fn over_time(lift: &Lift, half: usize, value: impl Fn(&Instant) -> f64) -> Vec<Xy> {
+    lift.instants.iter().filter(|i| i.half_step == half).map(|i| [i.time, value(i)]).collect()
+}
+
+/// A curve for every foot in the half step in which it stands.
+fn of_feet(lift: &Lift, value: impl Fn(&Instant, usize) -> f64) -> Vec<Curve> {
+    let names = lift.legs.whole.description().legs;
+    let mut curves = Vec::new();
+    for half in 0..2 {
+        let Some(first) = lift.instants.iter().find(|i| i.half_step == half) else { continue };
+        for (k, leg) in first.stance.iter().enumerate() {
+            let segment = over_time(lift, half, |i| value(i, *leg));
+            let curve = Curve::new(spaced(names[*leg].name), Ink::Leg(lift.legs.legs[*leg]), vec![segment]);
+            curves.push(curve.dash(Dash::of(k)));
+        }
+    }
+    curves
+}
+
+fn loads(s: &Subject, lift: &Lift) -> Figure {
+    let mut plot = s.time_plot("Vertical load of every real foot", "N");
+    plot.curves = of_feet(lift, |i, leg| i.reactions[leg][1]);
+    let d = s.description();
+    let feet = d.legs[0].members.len() as f64;
+    let least = d.limits.min_vertical_force / feet;
+    limit(&mut plot, least, format!("least {} N", given(least)));
+    let caption = "With the shares that leave most room within the limits of every foot and joint.";
+    Figure::plot("real-loads", &plot, caption)
+}
+
+fn friction(s: &Subject, lift: &Lift) -> Figure {
+    let mu = s.description().limits.friction;
+    let mut plot = s.time_plot("Friction of every real foot", "tangential − μ·vertical, N");
+    plot.curves = of_feet(lift, |i, leg| i.reactions[leg][0].hypot(i.reactions[leg][2]) - mu * i.reactions[leg][1]);
+    limit(&mut plot, 0.0, "friction cone".into());
+    Figure::plot("real-friction", &plot, "A foot whose curve is above the dashed line would slip or lift off.")
+}
+
+fn margin(s: &Subject, lift: &Lift) -> Figure {
+    let mut plot = s.time_plot("Room that the best shares leave", "least margin");
+    let segments = (0..2).map(|half| over_time(lift, half, |i| i.margin)).collect();
+    plot.curves.push(Curve::new("least margin of all limits of the standing legs", Ink::Text, segments));
+    limit(&mut plot, 0.0, "limit".into());
+    Figure::plot(
+        "real-margin",
+        &plot,
+        "Below the dashed line no shares keep to all limits: the real robot cannot do it.",
+    )
+}
+
+fn limit(plot: &mut Plot, at: f64, name: String) {
+    let [from, to] = plot.x.domain.unwrap_or_default();
+    let values = plot.curves.iter().flat_map(|c| c.segments.iter().flatten()).map(|p| p[1]);
+    plot.y.domain = Some(domain(values.chain([at])));
+    plot.limits.push(Limit { name, points: vec![[from, at], [to, at]] });
+}
+
+pub fn section(legs: &RealLegs, criterion: Criterion) -> Markup {
+    html! {
+        h3 { "Real legs" }
+        p { b { (verdict(legs)) } " In the equations of motion of the whole robot, equal shares leave lacking at most "
+            (legs.equal_shares.support.words()) " in support and " (legs.equal_shares.impact.words_of_impact())
+            " at an impact, the best shares " (legs.best_shares.support.words()) " and "
+            (legs.best_shares.impact.words_of_impact()) "." }
+        p { "With the cheapest shares: " (legs.cost(criterion)) "; " (digits(legs.costs.proportional.of(criterion), 6))
+            " if each foot pushes in proportion to its load." }
+        @if legs.verdict() != Verdict::NoEquilibrium {
+            ul { (worst("Least room in support", &legs.support)) (worst("Least room at an impact", &legs.impact)) }
+        }
+    }
+}
+
+fn verdict(legs: &RealLegs) -> String {
+    let sentence = legs.sentence();
+    let mut letters = sentence.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect()) + "."
+}
+
+fn worst(what: &str, w: &Worst) -> Markup {
+    html! {
+        li { (what) ": a margin of " (digits(w.margin, 4)) ", half step " (w.half_step) " at " (digits(w.time, 3))
+            " s. In the way of more: " (w.binding.iter().map(|b| spaced(&b.limit)).collect::<Vec<_>>().join(", ")) "." }
+    }
+}

@@ -1,0 +1,68 @@
+//! A result beside its verdict. A report says nothing of a motion but what was derived from it.
+
+use piaffe_model::Gait;
+use piaffe_optimizer::readback::Readback;
+use piaffe_optimizer::result::GaitResult;
+
+/// A result, and what is known of it. Of a confirmed one all is derived but the question and the search's own account.
+pub struct Record<'a> {
+    pub result: GaitResult,
+    pub standing: Standing<'a>,
+}
+
+/// What became of a result when it was derived anew.
+pub enum Standing<'a> {
+    /// The motion is an optimum of this gait, and does all that the result states.
+    Confirmed(&'a dyn Gait),
+    /// It is not, or could not be looked at, for this reason.
+    NotConfirmed(String),
+    /// It states no optimum. That none was found is a statement about a search: nothing confirms it.
+    NoOptimum,
+}
+
+impl<'a> Record<'a> {
+    /// A result that this program has just issued, and examined: by the same verdict.
+    pub fn issued(result: GaitResult, gait: &'a dyn Gait) -> Record<'a> {
+        let standing = if result.is_optimal() { Standing::Confirmed(gait) } else { Standing::NoOptimum };
+        Record { result, standing }
+    }
+
+    /// Derives a result that comes from elsewhere anew.
+    pub fn read(stated: GaitResult, gaits: &[&'a dyn Gait]) -> Record<'a> {
+        if !stated.is_optimal() {
+            return Record { result: stated, standing: Standing::NoOptimum };
+        }
+        match Readback::new(stated.clone(), gaits) {
+            Ok(Readback { result, gait, .. }) => Record { result, standing: Standing::Confirmed(gait) },
+            Err(unusable) => Record { result: stated, standing: Standing::NotConfirmed(unusable.to_string()) },
+        }
+    }
+
+    /// The gait of a confirmed optimum.
+    pub fn gait(&self) -> Option<&'a dyn Gait> {
+        match self.standing {
+            Standing::Confirmed(gait) => Some(gait),
+            _ => None,
+        }
+    }
+
+    pub fn is_confirmed(&self) -> bool {
+        self.gait().is_some()
+    }
+
+    /// Energy per weight and distance of the motion, whatever it minimizes: comparable from robot to robot.
+    pub fn cost_of_transport(&self) -> Option<f64> {
+        Some(self.gait()?.description().cost_of_transport(&self.result.costs?))
+    }
+
+    /// Why nothing is shown of it.
+    pub fn reason(&self) -> Option<String> {
+        match &self.standing {
+            Standing::Confirmed(_) => None,
+            Standing::NotConfirmed(reason) => Some(reason.clone()),
+            Standing::NoOptimum => {
+                Some(format!("{} is no optimum ({}): it has no walk", self.result.name(), self.result.message))
+            }
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! What a report is about: a result and the walk that it describes.
+
+use super::plot::{Axis, Plot, Span};
+use super::record::Record;
+use super::scene::{Dash, Xy};
+use super::{ink::Ink, plot::Curve};
+use piaffe_model::{Description, Gait};
+use piaffe_model::motion::Motion;
+use piaffe_optimizer::result::GaitResult;
+use piaffe_optimizer::stance::Undefined;
+use piaffe_optimizer::walk::{Moment, Walk};
+
+/// Intervals per half step with which curves are drawn.
+const INTERVALS: usize = 80;
+
+pub struct Subject<'a> {
+    /// Names it on the page and in files; no other has the same.
+    pub id: String,
+    pub result: GaitResult,
+    pub gait: &'a dyn Gait,
+    pub motion: Motion,
+    pub walk: Walk<'a>,
+    /// The criterion, per metre of travel.
+    pub cost: f64,
+    /// Energy per weight and distance.
+    pub transport: f64,
+}
+
+impl<'a> Subject<'a> {
+    /// Follows the motion of a confirmed result; of any other there is none.
+    ///
+    /// # Errors
+    /// If its motion cannot be followed.
+    pub fn new(record: &Record<'a>, id: String) -> Result<Option<Subject<'a>>, Undefined> {
+        let (Some(gait), Some(motion), result) = (record.gait(), record.result.motion(), record.result.clone()) else {
+            return Ok(None);
+        };
+        let (Some(cost), Some(transport)) = (result.cost, record.cost_of_transport()) else { return Ok(None) };
+        let walk = Walk::even(gait, &motion, INTERVALS)?;
+        Ok(Some(Subject { id, result, gait, motion, walk, cost, transport }))
+    }
+
+    pub fn description(&self) -> &'a Description {
+        self.walk.description
+    }
+
+    /// The real legs of a virtual leg in words.
+    pub fn leg_name(&self, leg: usize) -> String {
+        let members = &self.description().legs[leg].members;
+        members.iter().map(|m| spaced(m.name)).collect::<Vec<_>>().join(" + ")
+    }
+
+    /// The same, as short as a figure needs it: what the legs have in common, or the virtual leg's number.
+    pub fn short_leg_name(&self, leg: usize) -> String {
+        let members = &self.description().legs[leg].members;
+        let mut parts = members.first().map_or("", |m| m.name).split('_');
+        let common = parts.find(|part| members.iter().all(|m| m.name.split('_').any(|p| p == *part)));
+        match common {
+            Some(part) if members.len() > 1 => format!("{part} legs"),
+            _ => match members.as_ref() {
+                [only] => spaced(only.name),
+                _ => format!("leg {}", leg + 1),
+            },
+        }
+    }
+
+    /// The joints of each virtual leg, numbered by how far down the leg they are.
+    pub fn depth(&self, joint: usize) -> usize {
+        joint - self.description().legs[self.leg_of(joint)].first_joint
+    }
+
+    pub fn leg_of(&self, joint: usize) -> usize {
+        usize::from(joint >= self.description().legs[1].first_joint)
+    }
+
+    /// What a joint is called in every leg.
+    pub fn kind(&self, depth: usize) -> &'static str {
+        let d = self.description();
+        d.joints[d.legs[0].first_joint + depth].name.trim_end_matches(char::is_numeric)
+    }
+
+    /// How many joints a leg has.
+    pub fn depths(&self) -> usize {
+        let leg = &self.description().legs[0];
+        leg.end_joint - leg.first_joint
+    }
+
+    /// A value over time, half step by half step.
+    pub fn over_time(&self, value: impl Fn(&Moment) -> f64) -> Vec<Vec<Xy>> {
+        by_half_step(&self.walk, value)
+    }
+
+    /// The same at `times` as many moments.
+    pub fn finely(&self, times: usize, value: impl Fn(&Moment) -> f64) -> Vec<Vec<Xy>> {
+        let fine = Walk::even(self.gait, &self.motion, times * INTERVALS);
+        by_half_step(fine.as_ref().unwrap_or(&self.walk), value)
+    }
+
+    /// A plot over the time of the walk, with the half steps tinted by the leg in support.
+    pub fn time_plot(&self, title: impl Into<String>, unit: &'static str) -> Plot {
+        let time = Axis::new("time", "s").over([0.0, self.walk.duration()]);
+        let mut plot = Plot::new(title, time, Axis::new("", unit));
+        plot.over_time = true;
+        plot.spans = self.spans();
+        plot
+    }
+
+    pub fn spans(&self) -> Vec<Span> {
+        let span = |h: &piaffe_optimizer::walk::Support| Span {
+            name: format!("on {}", self.short_leg_name(h.leg)),
+            interval: [h.start, h.start + h.duration],
+            ink: Ink::Leg(h.leg),
+        };
+        self.walk.half_steps.iter().map(span).collect()
+    }
+
+    /// A curve for every joint of `joints`.
+    pub fn joint_curves(
+        &self,
+        joints: impl Iterator<Item = usize>,
+        value: impl Fn(&Moment, usize) -> f64,
+    ) -> Vec<Curve> {
+        let curve = |j: usize| {
+            let name = self.description().joints[j].name;
+            let segments = self.over_time(|m| value(m, j));
+            Curve::new(name, Ink::Leg(self.leg_of(j)), segments).dash(Dash::of(self.depth(j)))
+        };
+        joints.map(curve).collect()
+    }
+}
+
+fn by_half_step(walk: &Walk, value: impl Fn(&Moment) -> f64) -> Vec<Vec<Xy>> {
+    let half = |h| {
+        let moments = walk.moments.iter().filter(move |m| m.half_step == h);
+        moments.map(|m| [m.time, value(m)]).collect()
+    };
+    vec![half(0), half(1)]
+}
+
+/// A name of the specification for a reader.
+pub fn spaced(name: &str) -> String {
+    name.replace('_', " ")
+}

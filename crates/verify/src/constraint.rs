@@ -1,0 +1,174 @@
+//! The constraints of §4.2 and §6.1 by name, and the record of how closely each is met.
+//!
+//! A margin is what is left, in a natural unit: torques in the greatest torque, joint speeds in the
+//! unloaded speed, forces in the robot's weight, lengths in the stretched leg, durations in √(leg/gravity), velocities in
+//! √(gravity·leg), impulses in the robot's momentum at that velocity, angles in rad, the mean speed in the speed asked.
+//! Negative means violated.
+
+use super::receipt::Finding;
+use piaffe_model::Description;
+
+/// A margin below this makes a constraint active.
+pub const ACTIVE: f64 = 1e-4;
+
+/// One inequality or equality, to hold at all times of a half step or at its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Constraint {
+    /// |Γ| ≤ greatest torque.
+    Torque(usize),
+    /// |q̇| ≤ unloaded − (unloaded − loaded)·|Γ| / greatest torque.
+    Speed(usize),
+    /// Lower joint stop.
+    LowerStop(usize),
+    /// Upper joint stop.
+    UpperStop(usize),
+    /// Vertical reaction ≥ its minimum.
+    VerticalForce,
+    /// |tangential| ≤ μ·vertical.
+    Friction,
+    /// Swing foot above the parabola 4 h s (1 − s).
+    Clearance,
+    /// Platform's mass centre above the ground by its minimum.
+    PlatformHeight,
+    /// A joint or a corner of the platform above the ground by the body's clearance.
+    Height(usize),
+    /// Swing foot on the ground at the end; equality.
+    Touchdown,
+    /// T ≥ its minimum.
+    Shortest,
+    /// T ≤ its maximum.
+    Longest,
+    /// Vertical impulse on the landing foot ≥ 0.
+    VerticalImpulse,
+    /// |tangential impulse| ≤ μ·vertical.
+    ImpulseFriction,
+    /// The foot that leaves does not move into the ground.
+    Leaving,
+    /// Mean forward speed; equality.
+    MeanSpeed,
+}
+
+impl Constraint {
+    /// All constraints of a gait, in the order of their slots.
+    pub fn all(description: &Description) -> impl Iterator<Item = Constraint> {
+        use Constraint::*;
+        let of_joints = (0..description.joints()).flat_map(|j| [Torque(j), Speed(j), LowerStop(j), UpperStop(j)]);
+        let others = [
+            VerticalForce,
+            Friction,
+            Clearance,
+            Touchdown,
+            Shortest,
+            Longest,
+            VerticalImpulse,
+            ImpulseFriction,
+            Leaving,
+            MeanSpeed,
+            PlatformHeight,
+        ];
+        of_joints.chain(others).chain((0..description.points.len()).map(Height))
+    }
+
+    /// An equality can only be met exactly: it is never reported as active.
+    pub fn is_equality(self) -> bool {
+        matches!(self, Constraint::Touchdown | Constraint::MeanSpeed)
+    }
+
+    /// What a person reads.
+    pub fn name(self, description: &Description) -> String {
+        let joint = |j: usize| description.joints.get(j).map_or("?", |joint| joint.name);
+        match self {
+            Constraint::Torque(j) => format!("torque of {}", joint(j)),
+            Constraint::Speed(j) => format!("torque–speed of {}", joint(j)),
+            Constraint::LowerStop(j) => format!("range of {} (lower stop)", joint(j)),
+            Constraint::UpperStop(j) => format!("range of {} (upper stop)", joint(j)),
+            Constraint::VerticalForce => "vertical force".into(),
+            Constraint::Friction => "friction".into(),
+            Constraint::Clearance => "swing clearance".into(),
+            Constraint::Touchdown => "touchdown height".into(),
+            Constraint::Shortest => "shortest half step".into(),
+            Constraint::Longest => "longest half step".into(),
+            Constraint::VerticalImpulse => "vertical impulse".into(),
+            Constraint::ImpulseFriction => "friction of the impulse".into(),
+            Constraint::Leaving => "leaving foot".into(),
+            Constraint::MeanSpeed => "mean speed".into(),
+            Constraint::PlatformHeight => "platform height".into(),
+            Constraint::Height(point) => {
+                format!("height of {}", description.points.get(point).map_or("?", |point| point.name))
+            }
+        }
+    }
+}
+
+/// The least margin of every constraint over one half step.
+#[derive(Clone, Debug)]
+pub struct Tally {
+    half_step: usize,
+    joints: usize,
+    /// Constraint, least margin, its time.
+    entries: Vec<(Constraint, f64, f64)>,
+}
+
+impl Tally {
+    /// For half step `half_step`, 1-based.
+    pub fn new(description: &Description, half_step: usize) -> Tally {
+        let entries = Constraint::all(description).map(|c| (c, f64::INFINITY, 0.0)).collect();
+        Tally { half_step, joints: description.joints(), entries }
+    }
+
+    /// Notes the margin of a constraint at a time; a margin that is not a number counts as violated.
+    pub fn note(&mut self, constraint: Constraint, margin: f64, time: f64) {
+        self.note_all(constraint, &[margin], &[time]);
+    }
+
+    /// The same at several times.
+    pub fn note_all(&mut self, constraint: Constraint, margins: &[f64], times: &[f64]) {
+        let joints = 4 * self.joints;
+        let slot = match constraint {
+            Constraint::Torque(j) => 4 * j,
+            Constraint::Speed(j) => 4 * j + 1,
+            Constraint::LowerStop(j) => 4 * j + 2,
+            Constraint::UpperStop(j) => 4 * j + 3,
+            Constraint::VerticalForce => joints,
+            Constraint::Friction => joints + 1,
+            Constraint::Clearance => joints + 2,
+            Constraint::Touchdown => joints + 3,
+            Constraint::Shortest => joints + 4,
+            Constraint::Longest => joints + 5,
+            Constraint::VerticalImpulse => joints + 6,
+            Constraint::ImpulseFriction => joints + 7,
+            Constraint::Leaving => joints + 8,
+            Constraint::MeanSpeed => joints + 9,
+            Constraint::PlatformHeight => joints + 10,
+            Constraint::Height(point) => joints + 11 + point,
+        };
+        let Some((_, least, at)) = self.entries.get_mut(slot) else { return };
+        for (margin, time) in margins.iter().zip(times) {
+            let margin = if margin.is_nan() { f64::MIN } else { *margin };
+            if margin < *least {
+                (*least, *at) = (margin, *time);
+            }
+        }
+    }
+
+    /// Least margin of a constraint noted so far.
+    pub fn margin(&self, constraint: Constraint) -> f64 {
+        self.entries.iter().find(|entry| entry.0 == constraint).map_or(f64::INFINITY, |entry| entry.1)
+    }
+
+    /// The constraint that is violated most.
+    pub fn worst(&self, description: &Description) -> Option<Finding> {
+        let worst = self.entries.iter().filter(|entry| entry.1 < 0.0).min_by(|a, b| a.1.total_cmp(&b.1))?;
+        Some(self.finding(description, worst))
+    }
+
+    /// Inequalities that are met without room to spare, or not met.
+    pub fn active<'b>(&'b self, description: &'b Description) -> impl Iterator<Item = Finding> + 'b {
+        let active = self.entries.iter().filter(|entry| entry.1 <= ACTIVE && !entry.0.is_equality());
+        active.map(|entry| self.finding(description, entry))
+    }
+
+    fn finding(&self, description: &Description, &(constraint, margin, time): &(Constraint, f64, f64)) -> Finding {
+        Finding { constraint: constraint.name(description), half_step: self.half_step, time, margin }
+    }
+}

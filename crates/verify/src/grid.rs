@@ -1,0 +1,104 @@
+//! A half step on a dense uniform grid: constraints, costs and peaks.
+//!
+//! Optimizers impose constraints at a few nodes; between them they can be broken. Here all that
+//! must hold at every instant (§4.2, §6.1) is evaluated at every point of the grid.
+
+use super::constraint::{Constraint, Tally};
+use super::error::VerifyError;
+use super::instants::{Instants, State};
+use super::margins::{Units, clearance, steepness};
+use super::numbers::Numbers;
+use super::phase::Phase;
+use super::quadrature::{integral, integral_of_magnitude};
+use piaffe_model::motion::HalfStep;
+use piaffe_number::Lanes;
+use std::array::from_fn;
+
+/// What a half step adds up to.
+#[derive(Clone, Debug)]
+pub struct Totals {
+    /// ∫ Σ Γ² dt, N²·m²·s.
+    pub torque: f64,
+    /// ∫ Σ |Γ q̇| dt, J.
+    pub energy: f64,
+    /// x(T) − x(0) of the platform's mass centre, m.
+    pub travel: f64,
+    /// Greatest |Γ| and |q̇| of each joint, N·m and rad/s.
+    pub peaks: Vec<[f64; 2]>,
+}
+
+/// Instants that are evaluated side by side.
+const LANES: usize = 4;
+
+/// Evaluates `points` instants of a half step and notes the margins.
+pub fn evaluate(
+    phase: &mut Phase,
+    half_step: &HalfStep,
+    points: usize,
+    tally: &mut Tally,
+) -> Result<Totals, VerifyError> {
+    let description = phase.description();
+    let units = Units::new(description);
+    let joints = description.joints();
+    let mut instants: Instants<Lanes<LANES>> =
+        Instants::new(description, Numbers::new(description), &half_step.cast(), phase.leg());
+    let mut state = State::new(description);
+    let mut squares = vec![0.0; points];
+    // One list of powers per joint.
+    let mut powers = vec![0.0; points * joints];
+    let mut peaks = vec![[0.0_f64; 2]; joints];
+    let last = points - 1;
+    let mut platform = vec![0.0; points];
+    for first in (0..points).step_by(LANES) {
+        // Lanes beyond the last point repeat it.
+        let s: [f64; LANES] = from_fn(|lane| (first + lane).min(last) as f64 / last as f64);
+        let t = s.map(|s| phase.duration * s);
+        let [beta, betad] = transpose(t.map(|t| phase.beta(t)));
+        let acceleration = instants.at(Lanes(t), [Lanes(beta), Lanes(betad)], &mut state);
+        if !acceleration.is_some_and(|a| a.0.iter().all(|a| a.is_finite())) {
+            return Err(phase.singular(t[0]));
+        }
+        let count = LANES.min(points - first);
+        for (j, (torque, rate)) in state.torques.iter().zip(&state.qd).enumerate() {
+            for lane in 0..count {
+                let (torque, rate) = (torque.0[lane], rate.0[lane]);
+                squares[first + lane] += torque * torque;
+                powers[j * points + first + lane] = torque * rate;
+                peaks[j] = [peaks[j][0].max(torque.abs()), peaks[j][1].max(rate.abs())];
+            }
+        }
+        units.margins(instants.numbers(), &state, |constraint, margin| {
+            tally.note_all(constraint, &margin.0[..count], &t);
+        });
+        let clearance = clearance(instants.numbers(), &state, Lanes(s));
+        let [rise, fall] =
+            [false, true].map(|at_end| steepness(instants.numbers(), &state, phase.duration.into(), at_end));
+        for lane in 0..count {
+            let (above, per_height) = match first + lane {
+                0 => (rise.0[lane], 4.0),
+                i if i == last => (fall.0[lane], 4.0),
+                _ => (clearance.0[lane], 4.0 * s[lane] * (1.0 - s[lane])),
+            };
+            tally.note(Constraint::Clearance, room(above, per_height) / units.leg, t[lane]);
+            platform[first + lane] = state.platform.x.0[lane];
+        }
+    }
+    let landing = state.swing.y.0[last % LANES];
+    tally.note(Constraint::Touchdown, -landing.abs() / units.leg, phase.duration);
+    let spacing = phase.duration / last as f64;
+    let energy = powers.chunks_exact(points).map(|w| integral_of_magnitude(w, spacing)).sum();
+    Ok(Totals { torque: integral(&squares, spacing), energy, travel: platform[last] - platform[0], peaks })
+}
+
+/// How much higher the parabola could be, m, where the swing foot is so much above it; what is missing, where it is below.
+///
+/// At both ends the height is zero and the slope has to be steep enough: ±ẏ T ≥ 4 h. Near the ends
+/// any foot is close to the parabola; so room that is left is measured as the amount by which h
+/// could grow, which goes over into the margin of the slope.
+fn room(above: f64, per_height: f64) -> f64 {
+    if above > 0.0 { above / per_height } else { above }
+}
+
+fn transpose<const N: usize>(pairs: [[f64; 2]; N]) -> [[f64; N]; 2] {
+    [0, 1].map(|k| pairs.map(|pair| pair[k]))
+}

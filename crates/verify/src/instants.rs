@@ -1,0 +1,115 @@
+//! Single support as a function of t, β and β̇: all that happens at an instant.
+
+use super::geometry::{Plane, Vec3};
+use super::numbers::Numbers;
+use super::polynomial::Polynomials;
+use super::support::Support;
+use piaffe_model::Description;
+use piaffe_model::motion::HalfStep;
+use piaffe_number::Scalar;
+
+/// The instants of a half step: Q(t) is prescribed, β and β̇ come from outside.
+#[derive(Clone, Debug)]
+pub struct Instants<'a, T: Scalar = f64> {
+    support: Either<'a, T>,
+    polynomials: Polynomials<T>,
+    leg: usize,
+}
+
+/// Computed in the sagittal plane where all motion is in it, or else in space.
+#[derive(Clone, Debug)]
+enum Either<'a, T: Scalar> {
+    Plane(Support<'a, T, Plane>),
+    Space(Support<'a, T>),
+}
+
+/// What is done with `$support`, in whichever geometry it is.
+macro_rules! either {
+    ($of:expr, $support:ident => $do:expr) => {
+        match $of {
+            Either::Plane($support) => $do,
+            Either::Space($support) => $do,
+        }
+    };
+}
+
+/// All that happens at one instant. Positions and velocities are taken from the stance foot, in world axes.
+#[derive(Clone, Debug)]
+pub struct State<T = f64> {
+    pub q: Vec<T>,
+    pub qd: Vec<T>,
+    pub qdd: Vec<T>,
+    /// Of every joint, N·m.
+    pub torques: Vec<T>,
+    /// Reaction on the stance foot, N.
+    pub force: Vec3<T>,
+    /// The platform's mass centre, m.
+    pub platform: Vec3<T>,
+    /// The swing foot, m.
+    pub swing: Vec3<T>,
+    pub swing_velocity: Vec3<T>,
+    /// Of the description's points over the ground, m.
+    pub heights: Vec<T>,
+}
+
+impl<T: Scalar> State<T> {
+    pub fn new(description: &Description) -> Self {
+        let (n, joints) = (description.orientations(), description.joints());
+        let (q, zero) = (vec![T::zero(); n], Vec3::zeros());
+        State {
+            qd: q.clone(),
+            qdd: q.clone(),
+            q,
+            torques: vec![T::zero(); joints],
+            force: zero,
+            platform: zero,
+            swing: zero,
+            swing_velocity: zero,
+            heights: vec![T::zero(); description.points.len()],
+        }
+    }
+}
+
+impl<'a, T: Scalar> Instants<'a, T> {
+    /// Of a half step on `leg`, whose lists have a number for every prescribed coordinate.
+    pub fn new(description: &'a Description, numbers: Numbers<T>, half_step: &HalfStep<T>, leg: usize) -> Self {
+        let support = if Plane::holds(description) {
+            Either::Plane(Support::with(description, numbers, leg))
+        } else {
+            Either::Space(Support::with(description, numbers, leg))
+        };
+        Instants { support, polynomials: Polynomials::new(half_step), leg }
+    }
+
+    pub fn description(&self) -> &'a Description {
+        either!(&self.support, support => support.multibody.description())
+    }
+
+    /// On which it stands.
+    pub fn leg(&self) -> usize {
+        self.leg
+    }
+
+    pub fn numbers(&self) -> &Numbers<T> {
+        either!(&self.support, support => support.multibody.numbers())
+    }
+
+    /// β̈ by eq. 10 at time `t`; leaves q, q̇ and q̈ in `state`. `None` where f1 vanishes.
+    pub fn accelerate(&mut self, t: T, [beta, betad]: [T; 2], state: &mut State<T>) -> Option<T> {
+        let description = self.description();
+        for k in 0..description.prescribed() {
+            let at = description.prescribed_index(k);
+            [state.q[at], state.qd[at], state.qdd[at]] = self.polynomials.at(k, t);
+        }
+        state.q[description.unactuated] = beta;
+        state.qd[description.unactuated] = betad;
+        either!(&mut self.support, support => support.accelerate(&state.q, &state.qd, &mut state.qdd))
+    }
+
+    /// Everything at time `t`, into `state`; returns β̈. `None` where f1 vanishes.
+    pub fn at(&mut self, t: T, beta: [T; 2], state: &mut State<T>) -> Option<T> {
+        let acceleration = self.accelerate(t, beta, state)?;
+        either!(&mut self.support, support => support.complete(state));
+        Some(acceleration)
+    }
+}

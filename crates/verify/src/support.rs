@@ -1,0 +1,177 @@
+//! Single support on one leg at one instant: β̈, the torques and the reaction from Q̈.
+//!
+//! The stance foot S is at rest, so velocities and accelerations are those relative to it, and its
+//! reaction drops out of the balance along the free direction, in which the robot turns about S as a
+//! whole and no torque does work:
+//!
+//! ```text
+//! Σ_bodies  f·v + n·w = 0,    f = m (a − g),  n = I α + ω × I ω,   v, w: partial velocities about S
+//! ```
+//!
+//! It is linear in β̈ with the coefficient f1 of eq. 8, which gives eq. 10. Then the reaction is
+//! F = Σ f, and the torque of a joint is the moment about its axis of all it carries (eq. 5).
+
+use super::geometry::{Geometry, Space, Vec3};
+use super::heights::{Arms, alike};
+use super::instants::State;
+use super::multibody::Multibody;
+use super::numbers::Numbers;
+use piaffe_model::{Description, Rotation};
+use piaffe_number::Scalar;
+use num_traits::Zero;
+
+/// f1 below this share of (mass × leg²) counts as zero.
+const VANISHING: f64 = 1e-9;
+
+/// The mechanism on one leg, with room for what each body contributes.
+#[derive(Clone, Debug)]
+pub struct Support<'a, T: Scalar = f64, G: Geometry<T> = Space> {
+    pub multibody: Multibody<'a, T, G>,
+    leg: usize,
+    /// World axis of the free direction: 0, 1 or 2.
+    axis: usize,
+    loads: Vec<Load<G::Vector, G::Spin>>,
+    /// Force and moment about the platform's mass centre of each body with all that it carries.
+    carried: Vec<(G::Vector, G::Spin)>,
+    /// What must stay above the ground: where it is, or which point before is at the same height.
+    points: Vec<Result<Arms<T>, usize>>,
+    smallest_f1: f64,
+}
+
+/// Inertial force (gravity included) and moment of a body, as if β̈ were 0, and what β̈ = 1 adds.
+#[derive(Clone, Copy, Debug)]
+struct Load<V, S> {
+    force: V,
+    moment: S,
+    force_per_beta: V,
+    moment_per_beta: S,
+}
+
+impl<'a> Support<'a> {
+    pub fn new(description: &'a Description, leg: usize) -> Self {
+        Support::with(description, Numbers::new(description), leg)
+    }
+}
+
+impl<'a, T: Scalar, G: Geometry<T>> Support<'a, T, G> {
+    /// The mechanism of `description` with other numbers.
+    pub fn with(description: &'a Description, numbers: Numbers<T>, leg: usize) -> Self {
+        let (zero, still) = (G::Vector::zero(), G::Spin::zero());
+        let load = Load { force: zero, moment: still, force_per_beta: zero, moment_per_beta: still };
+        let length = leg_length(description);
+        let alike = alike(description).into_iter().enumerate();
+        let point = |(k, first)| {
+            if first < k { Err(first) } else { Ok(Arms::new(description, &numbers, &description.points[k])) }
+        };
+        let points = alike.map(point).collect();
+        Support {
+            points,
+            multibody: Multibody::with(description, numbers),
+            leg,
+            axis: if description.rotation == Rotation::Roll { 0 } else { 2 },
+            loads: vec![load; description.bodies.len()],
+            carried: vec![(zero, still); description.bodies.len()],
+            smallest_f1: VANISHING * description.total_mass() * length * length,
+        }
+    }
+
+    /// β̈ by eq. 10; also written into `qdd`, whose other entries are Q̈. `None` where f1 vanishes.
+    pub fn accelerate(&mut self, q: &[T], qd: &[T], qdd: &mut [T]) -> Option<T> {
+        let Support { multibody, leg, axis, loads, smallest_f1, .. } = self;
+        let description = multibody.description();
+        let beta = description.unactuated;
+        qdd[beta] = T::zero();
+        multibody.set(q, qd, qdd);
+        let stance = multibody.foot(*leg);
+        let stance_body = description.legs[*leg].foot_body;
+        let of_stance = |k| multibody.partial_velocity(k, stance_body, stance.position);
+        let beta_of_stance = of_stance(beta);
+        let (mut balance, mut f1) = (T::zero(), T::zero());
+        let numbers = multibody.numbers();
+        for (b, (body, load)) in numbers.bodies.iter().zip(loads).enumerate() {
+            let com = multibody.com(b);
+            let acceleration = com.acceleration - stance.acceleration + G::up(numbers.gravity);
+            let partial = |k| multibody.partial_velocity(k, b, com.position);
+            load.force = acceleration * body.mass;
+            load.moment = multibody.spin_moment(b);
+            load.force_per_beta = (partial(beta) - beta_of_stance) * body.mass;
+            load.moment_per_beta = multibody.spin_momentum(b, multibody.partial_spin(beta, b));
+            let arm = com.position - stance.position;
+            balance += G::about(G::moment(arm, load.force) + load.moment, *axis);
+            f1 += G::about(G::moment(arm, load.force_per_beta) + load.moment_per_beta, *axis);
+        }
+        let magnitude = f1.least_magnitude();
+        if magnitude.is_nan() || magnitude <= *smallest_f1 {
+            return None;
+        }
+        let acceleration = -balance / f1;
+        qdd[beta] = acceleration;
+        Some(acceleration)
+    }
+
+    /// The torque of every joint, N·m, and the reaction on the stance foot, N, for the state of the
+    /// last [`Support::accelerate`], whose `qdd` is complete.
+    pub fn torques(&mut self, qdd: &[T], torques: &mut [T]) -> G::Vector {
+        let description = self.multibody.description();
+        let beta = qdd[description.unactuated];
+        let mut reaction = G::Vector::zero();
+        self.carried.fill((G::Vector::zero(), G::Spin::zero()));
+        // Children before parents: what a body carries is its own load and that of its children.
+        for (b, (body, load)) in description.bodies.iter().zip(&self.loads).enumerate().rev() {
+            let force = load.force + load.force_per_beta * beta;
+            let moment = load.moment + load.moment_per_beta * beta + G::moment(self.multibody.com(b).position, force);
+            reaction += force;
+            let (carried, carried_moment) = (self.carried[b].0 + force, self.carried[b].1 + moment);
+            self.carried[b] = (carried, carried_moment);
+            if let Some(parent) = body.parent {
+                self.carried[parent].0 += carried;
+                self.carried[parent].1 += carried_moment;
+            }
+        }
+        let stance = self.multibody.foot(self.leg).position;
+        let stance_body = description.legs[self.leg].foot_body;
+        for (b, body) in description.bodies.iter().enumerate() {
+            let Some(k) = body.coordinate else { continue };
+            let (mut force, mut moment) = self.carried[b];
+            if self.multibody.moves(k, stance_body) {
+                force -= reaction;
+                moment -= G::moment(stance, reaction);
+            }
+            let (axis, joint) = self.multibody.axis(k);
+            let rotor = self.multibody.numbers().joints[k].rotor_inertia * qdd[k];
+            torques[k] = G::along(moment - G::moment(joint, force), axis) + rotor;
+        }
+        reaction
+    }
+
+    /// Completes what follows from the last [`Support::accelerate`] and the `qdd` it wrote.
+    pub fn complete(&mut self, state: &mut State<T>) {
+        let force = self.torques(&state.qdd, &mut state.torques);
+        let [stance, swing] = [self.leg, 1 - self.leg].map(|leg| self.multibody.foot(leg));
+        // How deep the hips are does not matter in the plane.
+        let seen = |v| G::in_space(if self.multibody.description().lateral { v } else { G::flattened(v) });
+        state.force = G::in_space(force);
+        state.platform = seen(-stance.position);
+        state.swing = seen(swing.position - stance.position);
+        state.swing_velocity = G::in_space(swing.velocity - stance.velocity);
+        for (k, point) in self.points.iter().enumerate() {
+            state.heights[k] = match point {
+                Ok(arms) => state.platform.y + arms.rise(&self.multibody),
+                Err(first) => state.heights[*first],
+            };
+        }
+    }
+}
+
+/// Length of the stretched leg 1, m: the unit in which lengths are judged.
+pub fn leg_length(description: &Description) -> f64 {
+    let leg = &description.legs[0];
+    let mut length = Vec3::from(leg.foot).norm();
+    let mut body = leg.foot_body;
+    // Up to the body that hangs on the platform, whose own offset is where the hip is mounted.
+    while let Some(parent) = description.bodies[body].parent.filter(|p| *p != 0) {
+        length += Vec3::from(description.bodies[body].offset).norm();
+        body = parent;
+    }
+    length
+}
