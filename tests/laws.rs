@@ -79,7 +79,7 @@ fn nothing_below_the_command_line_prints() {
 #[test]
 fn only_the_facade_of_codegen_touches_the_world() {
     let codegen = sources("codegen/src");
-        let pure: Vec<_> = codegen
+    let pure: Vec<_> = codegen
         .into_iter()
         .filter(|(p, _)| p.file_name().is_none_or(|f| f != "config.rs" && f != "tests.rs"))
         .collect();

@@ -2,9 +2,9 @@
 
 use super::{output, whole};
 use anyhow::anyhow;
-use piaffe_import::standing;
 use piaffe_codegen::spec::{parse_gait, parse_robot};
 use piaffe_codegen::{RobotFiles, check};
+use piaffe_import::standing;
 use std::path::Path;
 
 pub fn run(folder: &Path, drawing: Option<&Path>) -> anyhow::Result<bool> {

@@ -2,8 +2,8 @@
 
 use super::input;
 use anyhow::{Context, bail};
-use piaffe_report::overview::Overview;
 use piaffe_optimizer::result::GaitResult;
+use piaffe_report::overview::Overview;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::path::{Path, PathBuf};

@@ -2,8 +2,8 @@
 
 use super::{input, output, whole};
 use anyhow::{Context, bail};
-use piaffe_import::{Direction, FootPoint, Lock, Options, Setting, Stops, import};
 use piaffe_codegen::{RobotFiles, SpecFile, check};
+use piaffe_import::{Direction, FootPoint, Lock, Options, Setting, Stops, import};
 use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]

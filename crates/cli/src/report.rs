@@ -4,8 +4,8 @@ use super::built::gaits;
 use super::document::{self, Document, OVERVIEW, Stated};
 use super::{input, output, whole};
 use anyhow::{Context, bail};
-use piaffe_report::{Extremes, Record, Report};
 use piaffe_optimizer::result::GaitResult;
+use piaffe_report::{Extremes, Record, Report};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -55,7 +55,8 @@ pub fn run(paths: &[PathBuf], detail: Option<f64>, out: &Path) -> anyhow::Result
     if all.is_empty() && unread > 0 {
         bail!("none of the results could be read");
     }
-    let mut records: Vec<Record> = different(all)?.into_par_iter().map(|result| Record::read(result, gaits())).collect();
+    let mut records: Vec<Record> =
+        different(all)?.into_par_iter().map(|result| Record::read(result, gaits())).collect();
     let place = |r: &GaitResult| gaits().iter().position(|g| g.description().key == r.gait);
     records.sort_by(|a, b| {
         let (a, b) = (&a.result, &b.result);

@@ -1,12 +1,12 @@
 //! A result for a person.
 
 use super::digits::decimal;
-use piaffe_verify::certificate::Certificate;
 use piaffe_model::Description;
 use piaffe_model::motion::Criterion;
 use piaffe_optimizer::result::{GaitResult, Status};
 use piaffe_optimizer::search::evidence::Effort;
 use piaffe_optimizer::sensitivity::Sensitivity;
+use piaffe_verify::certificate::Certificate;
 use std::io::Write;
 
 /// Motor speeds are read in rev/min.

@@ -2,8 +2,8 @@
 
 use super::table::{coordinates, real_joints};
 use piaffe_model::HalfSteps;
-use piaffe_model::{Description, Gait};
 use piaffe_model::motion::{HalfStep, Motion};
+use piaffe_model::{Description, Gait};
 use piaffe_optimizer::trajectory::Basis;
 use serde::Serialize;
 

@@ -3,8 +3,8 @@
 use super::frame;
 use super::xml::{Xml, numbers};
 use piaffe_model::Rotation;
-use piaffe_model::{Body, Description, Leg, Member};
 use piaffe_model::units::Units;
+use piaffe_model::{Body, Description, Leg, Member};
 use piaffe_optimizer::walk::{Moment, Walk};
 
 /// Links can be slender rods without inertia about themselves; MuJoCo wants some: this share of the robot's mass times the square

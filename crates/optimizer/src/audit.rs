@@ -3,10 +3,10 @@
 //! An audit says of each statement whether it was confirmed, with both numbers where it was not, or why it could not be
 //! checked. A statement that must be there and is not is one that does not hold.
 
-use piaffe_model::Gait;
-use piaffe_model::motion::Motion;
 use crate::origin::{gait_of, under_its_limits};
 use crate::result::GaitResult;
+use piaffe_model::Gait;
+use piaffe_model::motion::Motion;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 

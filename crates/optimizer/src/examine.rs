@@ -2,10 +2,10 @@
 
 use crate::finite::is_finite;
 use crate::four_legs::RealLegs;
-use piaffe_model::Gait;
 use crate::result::{GaitResult, NotExamined};
 use crate::sensitivity::sensitivities;
 use crate::stability::stability;
+use piaffe_model::Gait;
 
 impl GaitResult {
     /// Examines the motion and adds what is found; one that is no optimum is left as it is.

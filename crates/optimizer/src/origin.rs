@@ -1,8 +1,8 @@
 //! Which gait of this build a result is of.
 
 use crate::altered::Altered;
-use piaffe_model::{Description, Gait, Limits};
 use crate::result::GaitResult;
+use piaffe_model::{Description, Gait, Limits};
 
 /// Why there is none.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

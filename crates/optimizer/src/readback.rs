@@ -1,10 +1,10 @@
 //! A result that comes back from a file: it is of this build's robot, and all that it states was derived anew.
 
 use crate::audit::Audit;
-use piaffe_model::Gait;
-use piaffe_model::motion::Motion;
 use crate::origin::{Foreign, gait_of};
 use crate::result::GaitResult;
+use piaffe_model::Gait;
+use piaffe_model::motion::Motion;
 
 /// An optimum that says of its motion nothing but what the motion does.
 pub struct Readback<'a> {

@@ -1,18 +1,18 @@
 //! A result as it leaves the program: what was asked, what was found, and its receipt.
 
-use piaffe_verify::certificate::Certificate;
 use crate::cycle::{Label, theta};
 use crate::four_legs::RealLegs;
-use piaffe_model::Gait;
-use piaffe_model::motion::{Costs, Criterion, HalfStep, Motion};
 use crate::optimality::Optimality;
 use crate::search::evidence::Effort;
 use crate::search::local::Local;
 use crate::search::multi_start::Found;
 use crate::sensitivity::Sensitivities;
-use piaffe_sqp as sqp;
 use crate::stability::Stability;
 use crate::verdict::{self, Verdict};
+use piaffe_model::Gait;
+use piaffe_model::motion::{Costs, Criterion, HalfStep, Motion};
+use piaffe_sqp as sqp;
+use piaffe_verify::certificate::Certificate;
 use piaffe_verify::{Finding, JointPeak, VerifyError, verify};
 use serde::{Deserialize, Serialize};
 

@@ -3,9 +3,9 @@
 //! Every quantity comes from the generated kernels; the only numerics here are the condition
 //! numbers of the linear systems behind them in the robot's units, which tell a singular case from a result.
 
-use piaffe_model::{Description, Gait, Rotation};
-use piaffe_model::units::Units;
 use nalgebra::DMatrix;
+use piaffe_model::units::Units;
+use piaffe_model::{Description, Gait, Rotation};
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 

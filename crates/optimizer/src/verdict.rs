@@ -5,12 +5,12 @@
 //! conditions with multipliers fitted anew, and that the certificate proves no limit broken between the instants of the
 //! receipt. That a certificate is incomplete (sampled) is no reason against an optimum; it is said beside it.
 
-use piaffe_verify::certificate::{Certificate, certify};
 use crate::constraints::sharing::applies;
 use crate::four_legs::RealLegs;
+use crate::optimality::{KKT_RESIDUAL, Optimality, optimality};
 use piaffe_model::Gait;
 use piaffe_model::motion::{Criterion, Motion};
-use crate::optimality::{KKT_RESIDUAL, Optimality, optimality};
+use piaffe_verify::certificate::{Certificate, certify};
 use piaffe_verify::{Receipt, VerifyError, verify};
 
 /// Largest violation and cycle error with which a motion counts as an optimum; and see [`KKT_RESIDUAL`].

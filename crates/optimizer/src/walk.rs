@@ -5,9 +5,9 @@
 
 use crate::cycle::{Cycle, Sample, theta};
 use crate::instant::{Glance, Quantities};
-use piaffe_model::{Body, Description, Gait, HalfSteps, Rotation};
-use piaffe_model::motion::{Criterion, Motion};
 use crate::stance::Undefined;
+use piaffe_model::motion::{Criterion, Motion};
+use piaffe_model::{Body, Description, Gait, HalfSteps, Rotation};
 
 /// A point or vector in world axes: forward, up, to the right.
 pub type Point = [f64; 3];

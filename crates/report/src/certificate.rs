@@ -1,8 +1,8 @@
 //! The certificate in words: what is proven for all times, and where the proof ends.
 
 use super::number::{digits, scientific};
-use piaffe_verify::certificate::{Certificate, Gap};
 use maud::{Markup, html};
+use piaffe_verify::certificate::{Certificate, Gap};
 
 pub fn section(c: &Certificate) -> Markup {
     let pieces: usize = c.half_steps.iter().map(|h| h.evaluations).sum();

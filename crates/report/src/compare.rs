@@ -4,10 +4,10 @@ use super::marks::marks;
 use super::number::{digits, given, significant};
 use super::page::{capital, durations};
 use super::subject::Subject;
+use maud::{Markup, html};
 use piaffe_model::motion::Criterion;
 use piaffe_optimizer::result::GaitResult;
 use piaffe_optimizer::walk::Moment;
-use maud::{Markup, html};
 
 /// Limits that are named.
 const NAMED: usize = 3;

@@ -1,9 +1,9 @@
 //! What to change to lower the criterion: the slopes of the optimum, ranked.
 
 use super::number::{digits, given};
+use maud::{Markup, html};
 use piaffe_optimizer::result::GaitResult;
 use piaffe_optimizer::sensitivity::Sensitivity;
-use maud::{Markup, html};
 
 /// Rows that are shown at once.
 const SHOWN: usize = 12;

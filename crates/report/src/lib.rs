@@ -42,8 +42,8 @@ pub use figure::Figure;
 pub use record::{Record, Standing};
 pub use subject::Subject;
 
-use piaffe_optimizer::stance::Undefined;
 use atlas::Atlas;
+use piaffe_optimizer::stance::Undefined;
 
 /// Why there is no report.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -1,9 +1,9 @@
 //! What stands behind a gait, in three marks: its receipt, what is proven between the instants, and whether the real legs can.
 
 use super::number::significant;
+use maud::{Markup, html};
 use piaffe_optimizer::four_legs::Verdict;
 use piaffe_optimizer::result::GaitResult;
-use maud::{Markup, html};
 
 /// One of the three, in a word or two, and in more of them.
 pub struct Mark {

@@ -1,8 +1,8 @@
 //! What a sweep says of its results as a whole, in `sweep.json`: all of it follows from the results that stand beside it.
 
-use piaffe_optimizer::audit::{Audit, Statement};
-use piaffe_model::motion::Criterion;
 use crate::Extremes;
+use piaffe_model::motion::Criterion;
+use piaffe_optimizer::audit::{Audit, Statement};
 use piaffe_optimizer::result::{GaitResult, Status};
 use piaffe_optimizer::search::crossover::Comparison;
 use serde::{Deserialize, Serialize};

@@ -9,11 +9,11 @@ use super::subject::{Subject, spaced};
 use super::words::meaning;
 use super::{Record, Report, Standing};
 use super::{certificate, compare, ink, levers, marks, player, price, real_legs, recovery, svg};
-use piaffe_model::motion::Criterion;
-use piaffe_optimizer::result::GaitResult;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use piaffe_model::motion::Criterion;
+use piaffe_optimizer::result::GaitResult;
 use serde_json::{Value, json};
 
 pub fn page(report: &Report) -> String {

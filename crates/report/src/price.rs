@@ -2,8 +2,8 @@
 
 use super::number::{digits, scientific};
 use super::words::meaning;
-use piaffe_optimizer::result::GaitResult;
 use maud::{Markup, html};
+use piaffe_optimizer::result::GaitResult;
 
 /// Limits that are named.
 const NAMED: usize = 6;

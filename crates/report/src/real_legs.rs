@@ -7,9 +7,9 @@ use super::plot::{Curve, Limit, Plot};
 use super::scale::domain;
 use super::scene::{Dash, Xy};
 use super::subject::{Subject, spaced};
-use piaffe_optimizer::four_legs::{Instant, Lift, RealLegs, Verdict, Worst};
-use piaffe_model::motion::Criterion;
 use maud::{Markup, html};
+use piaffe_model::motion::Criterion;
+use piaffe_optimizer::four_legs::{Instant, Lift, RealLegs, Verdict, Worst};
 
 /// Intervals per half step with which curves are drawn.
 const INTERVALS: usize = 120;

@@ -1,8 +1,8 @@
 //! What becomes of a push, under which control.
 
+use maud::{Markup, html};
 use piaffe_optimizer::result::GaitResult;
 use piaffe_optimizer::stability::{PhaseTracking, TimeTracking};
-use maud::{Markup, html};
 
 pub fn section(r: &GaitResult) -> Markup {
     let Some(stability) = &r.stability else { return html! {} };

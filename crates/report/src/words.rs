@@ -37,11 +37,11 @@ const UNKNOWN: &str = "This limit has no room to spare.";
 #[cfg(test)]
 mod tests {
     use super::*;
-    use piaffe_optimizer::altered::Altered;
-    use piaffe_optimizer::cycle::Cycle;
     use piaffe::gaits::GAITS;
     use piaffe_model::Gait;
     use piaffe_model::motion::Criterion;
+    use piaffe_optimizer::altered::Altered;
+    use piaffe_optimizer::cycle::Cycle;
     use piaffe_sqp::Problem;
     use piaffe_verify::constraint::Constraint;
 

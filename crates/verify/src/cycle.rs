@@ -7,8 +7,8 @@ use super::impact::impact_of;
 use super::margins::Units;
 use super::multibody::Multibody;
 use super::numbers::Numbers;
-use piaffe_model::{Description, HalfSteps};
 use piaffe_model::motion::HalfStep;
+use piaffe_model::{Description, HalfSteps};
 use piaffe_number::Scalar;
 
 /// Leg that half step `index` stands on.

@@ -4,10 +4,10 @@
 //! too, so both geometries give the same bits, the plane in a fraction of the time.
 
 use super::numbers::Rigid;
-use piaffe_model::{Description, Rotation};
-use piaffe_number::Scalar;
 use nalgebra::{Vector2, Vector3};
 use num_traits::Zero;
+use piaffe_model::{Description, Rotation};
+use piaffe_number::Scalar;
 use std::fmt::Debug;
 use std::ops::{AddAssign, Mul, Neg, Sub, SubAssign};
 

@@ -15,9 +15,9 @@
 
 use super::geometry::{Geometry, Space, Vec3};
 use super::numbers::Numbers;
+use num_traits::Zero;
 use piaffe_model::{Description, Rotation};
 use piaffe_number::Scalar;
-use num_traits::Zero;
 
 /// A mechanism at one state. The workspace is allocated once; no method allocates.
 #[derive(Clone, Debug)]

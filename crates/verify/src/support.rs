@@ -16,9 +16,9 @@ use super::heights::{Arms, alike};
 use super::instants::State;
 use super::multibody::Multibody;
 use super::numbers::Numbers;
+use num_traits::Zero;
 use piaffe_model::{Description, Rotation};
 use piaffe_number::Scalar;
-use num_traits::Zero;
 
 /// f1 below this share of (mass × leg²) counts as zero.
 const VANISHING: f64 = 1e-9;

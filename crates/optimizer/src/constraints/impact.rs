@@ -4,8 +4,8 @@
 
 use super::sharing::{applies, first, length, offsets, second};
 use piaffe_model::Description;
-use piaffe_number::Scalar;
 use piaffe_model::units::Units;
+use piaffe_number::Scalar;
 
 /// Formulas on the results of a touchdown kernel.
 #[derive(Clone, Debug)]

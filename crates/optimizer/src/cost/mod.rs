@@ -8,10 +8,10 @@ pub use drive::Drive;
 
 use crate::instant::Instants;
 use crate::lgl::NODES;
-use piaffe_model::Description;
-use piaffe_model::motion::Criterion;
 use crate::stance::Mesh;
 use drive::Partials;
+use piaffe_model::Description;
+use piaffe_model::motion::Criterion;
 
 /// Integral over s ∈ [0, 1] of a criterion's integrand, and its partial derivatives.
 #[derive(Clone, Debug)]

@@ -6,9 +6,9 @@ use crate::constraints::PathConstraint;
 use crate::cost::Integral;
 use crate::instant::{Glance, Instants};
 use crate::lgl::NODES;
-use piaffe_model::{Description, Gait};
 use crate::stance::{Layout, Mesh, Stance, Undefined};
 use piaffe_model::units::Units;
+use piaffe_model::{Description, Gait};
 
 /// Length of a touchdown's couple and pitch, which come after everything else.
 const SHARED: usize = 3;

@@ -5,8 +5,8 @@
 
 use super::lift::Lift;
 use super::limits::Affine;
-use piaffe_model::motion::Costs;
 use nalgebra::DVector;
+use piaffe_model::motion::Costs;
 use serde::{Deserialize, Serialize};
 
 /// One number for each way to share.

@@ -2,8 +2,8 @@
 
 use super::posture::Posture;
 use super::shares::Rank;
-use piaffe_model::whole::Whole;
 use nalgebra::{DMatrix, DVector, DVectorView};
+use piaffe_model::whole::Whole;
 
 /// Speeds of the platform, which no motor drives: of its mass centre, and of its turning.
 pub const PLATFORM: usize = 6;

@@ -7,11 +7,11 @@ use super::limits::{Affine, Limit, Limits};
 use super::margin::{Choice, best};
 use super::posture::{Legs, Posture};
 use super::shares::Shares;
-use piaffe_model::Gait;
-use piaffe_model::motion::Motion;
 use crate::stance::Undefined;
 use crate::walk::{Moment, Point, Walk};
 use nalgebra::{DMatrix, DVector};
+use piaffe_model::Gait;
+use piaffe_model::motion::Motion;
 
 /// Why there is no lifted motion.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -1,8 +1,8 @@
 //! The whole robot in the motion of a gait.
 
+use crate::walk::{Moment, Point};
 use piaffe_model::whole::Whole;
 use piaffe_model::{Description, Gait, Rotation};
-use crate::walk::{Moment, Point};
 
 /// Which real legs and joints stand behind the virtual ones.
 pub struct Legs<'a> {

@@ -1,8 +1,8 @@
 //! From derivatives in the state of an instant to derivatives in the parameters of its half step.
 
 use super::Instants;
-use piaffe_model::Description;
 use crate::stance::{Layout, Stance};
+use piaffe_model::Description;
 
 /// Row `r` of a Jacobian in (q, q̇, q̈), by parts.
 pub(super) fn parts(jacobian: &[f64], r: usize, nq: usize) -> [&[f64]; 3] {

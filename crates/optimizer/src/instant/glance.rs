@@ -2,8 +2,8 @@
 
 use super::Quantities;
 use super::quantities::{heights_length, placement_length, sharing_length};
-use piaffe_model::{Description, Gait};
 use crate::stance::{Mesh, Stance, State, Undefined};
+use piaffe_model::{Description, Gait};
 
 /// One instant between the nodes: the same quantities, without derivatives.
 #[derive(Clone, Debug)]

@@ -10,9 +10,9 @@ mod quantities;
 pub use glance::Glance;
 pub use quantities::{Quantities, Shared, direction};
 
-use piaffe_model::{Description, Gait};
 use crate::stance::{Layout, Mesh, Stance, basis_derivatives};
 use chain::{Chain, parts};
+use piaffe_model::{Description, Gait};
 use quantities::{heights_length, inverse_length, placement_length, sharing_length};
 
 /// The quantities at all nodes of a half step: values, and derivatives of the last linearization.

@@ -5,9 +5,9 @@
 //! A multiplier is a price: what the criterion would gain per unit by which its limit is loosened.
 
 use crate::cycle::{AT_REST, Cycle, Label, Place, theta};
+use crate::search::refine::dips;
 use piaffe_model::Gait;
 use piaffe_model::motion::{Criterion, Motion};
-use crate::search::refine::dips;
 use piaffe_sqp::{Multipliers, Undefined, multipliers};
 use serde::{Deserialize, Serialize};
 

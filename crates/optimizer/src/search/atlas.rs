@@ -7,9 +7,9 @@
 use super::journal::{Journal, common, step};
 use super::local::{Local, Task};
 use super::multi_start::{Settings, search_from};
+use crate::result::GaitResult;
 use piaffe_model::Gait;
 use piaffe_model::motion::Criterion;
-use crate::result::GaitResult;
 use piaffe_sqp::Control;
 use std::time::Instant;
 

@@ -1,8 +1,8 @@
 //! Whether the optima at two speeds are of one branch: whether each, carried to the other's speed, becomes the other.
 
 use super::local::{Local, Task};
-use piaffe_model::Gait;
 use crate::result::GaitResult;
+use piaffe_model::Gait;
 use piaffe_sqp::Control;
 
 /// Equal steps in which an optimum is carried: one where that is enough, more where the branch bends.

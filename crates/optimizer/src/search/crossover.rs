@@ -5,9 +5,9 @@
 use super::atlas::search_at;
 use super::journal::Journal;
 use super::multi_start::Settings;
+use crate::result::GaitResult;
 use piaffe_model::Gait;
 use piaffe_model::motion::Criterion;
-use crate::result::GaitResult;
 use piaffe_model::units::Units;
 use serde::{Deserialize, Serialize};
 

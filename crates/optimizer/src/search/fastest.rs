@@ -4,11 +4,11 @@ use super::atlas::search_at;
 use super::journal::{Journal, common, step};
 use super::local::{Conflict, Local, Task};
 use super::multi_start::{Settings, search, start};
+use crate::result::GaitResult;
 use piaffe_model::Gait;
 use piaffe_model::motion::Criterion;
-use crate::result::GaitResult;
-use piaffe_sqp::Control;
 use piaffe_model::units::Units;
+use piaffe_sqp::Control;
 use serde::{Deserialize, Serialize};
 
 /// Width to which a limiting speed is bisected, in the robot's unit of speed.

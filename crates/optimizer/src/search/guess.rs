@@ -4,10 +4,10 @@
 //! move over it; configurations follow by inverse kinematics on the generated placement kernel, for
 //! any leg, kept near a nominal posture inside the joint ranges.
 
-use piaffe_model::{Description, Gait, HalfSteps, Rotation};
+use nalgebra::{DMatrix, DVector};
 use piaffe_model::motion::{HalfStep, Motion};
 use piaffe_model::units::Units;
-use nalgebra::{DMatrix, DVector};
+use piaffe_model::{Description, Gait, HalfSteps, Rotation};
 use std::f64::consts::FRAC_PI_2;
 
 /// What distinguishes one start from another.

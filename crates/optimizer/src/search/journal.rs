@@ -4,9 +4,9 @@
 //! what an earlier run found serves exactly where it would be found again: with another robot, seed or
 //! neighbour the name is another one.
 
-use piaffe_model::{Gait, hash};
 use crate::result::GaitResult;
 use crate::search::multi_start::Settings;
+use piaffe_model::{Gait, hash};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;

@@ -3,11 +3,11 @@
 use super::nearest::{nearest, reach};
 use super::refine::dips;
 use crate::cycle::{AT_REST, Cycle, Label, Still, elements};
+use crate::stance::Undefined;
 use piaffe_model::Gait;
 use piaffe_model::motion::{Costs, Criterion, Motion};
 use piaffe_sqp as sqp;
 use piaffe_sqp::{Control, KktResidual, Options, Solution, Status, multipliers};
-use crate::stance::Undefined;
 
 /// Violation (scaled) that is none.
 const FEASIBILITY: f64 = 1e-8;

@@ -9,16 +9,16 @@
 use crate::constraints::{ImpactConstraints, Limits, path_constraints_of};
 use crate::cycle::{CLOSURE, Place, renamed};
 use crate::instant::{Quantities, direction};
-use piaffe_model::{Description, Lever};
-use piaffe_model::motion::{HalfStep, Motion};
-use piaffe_number::{Dual, Scalar};
 use crate::optimality::Linearized;
+use num_traits::Zero;
+use piaffe_model::motion::{HalfStep, Motion};
+use piaffe_model::{Description, Lever};
+use piaffe_number::{Dual, Scalar};
 use piaffe_verify::impact::{Impact, impact_of};
 use piaffe_verify::instants::State;
 use piaffe_verify::multibody::Multibody;
 use piaffe_verify::numbers::Numbers;
 use piaffe_verify::phase::Phase;
-use num_traits::Zero;
 
 /// Parameters that are taken together.
 pub const LANES: usize = 8;

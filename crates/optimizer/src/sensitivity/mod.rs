@@ -7,10 +7,10 @@
 mod lagrangian;
 
 use crate::constraints::sharing::applies;
-use piaffe_model::Gait;
-use piaffe_model::motion::{Criterion, Motion};
 use crate::optimality::{KKT_RESIDUAL, Linearized};
 use lagrangian::{LANES, Slopes};
+use piaffe_model::Gait;
+use piaffe_model::motion::{Criterion, Motion};
 use serde::{Deserialize, Serialize};
 
 /// Slopes of the least criterion.

@@ -16,11 +16,11 @@ pub mod phase;
 pub mod time;
 mod words;
 
-use piaffe_model::{Gait, HalfSteps};
-use piaffe_model::motion::Motion;
 use crate::stance::Undefined;
 use passage::Passage;
 pub use phase::PhaseTracking;
+use piaffe_model::motion::Motion;
+use piaffe_model::{Gait, HalfSteps};
 use serde::{Deserialize, Serialize};
 pub use time::{Clock, TimeTracking};
 

@@ -1,10 +1,10 @@
 //! A half step of the gait and the landing that ends it, with what small deviations need to know of them.
 
 use crate::cycle::{elements, renamed, stance_leg};
+use crate::stance::{self, Layout, Mesh, Stance, Undefined};
 use piaffe_model::Gait;
 use piaffe_model::motion::{HalfStep, Motion};
 use piaffe_sqp::dot;
-use crate::stance::{self, Layout, Mesh, Stance, Undefined};
 
 /// Intervals per half step at whose ends the motion is looked at.
 const INSTANTS: usize = 500;

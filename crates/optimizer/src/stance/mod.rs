@@ -17,8 +17,8 @@ pub use prescribed::{Layout, Prescribed, basis_derivatives};
 pub use system::System;
 
 use crate::lgl::NODES;
-use piaffe_model::{Description, Gait};
 use piaffe_model::units::Units;
+use piaffe_model::{Description, Gait};
 
 /// A motion that the equations do not admit.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]

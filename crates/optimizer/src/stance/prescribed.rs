@@ -1,8 +1,8 @@
 //! The prescribed coordinates Q(t) (eq. 15) and the parameters of a half step that they are made of.
 
 use super::Mesh;
-use piaffe_model::Description;
 use crate::trajectory::{Basis, Jet};
+use piaffe_model::Description;
 
 /// Numbers of things in a half step's parameter vector.
 #[derive(Clone, Copy, Debug)]

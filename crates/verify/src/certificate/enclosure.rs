@@ -13,14 +13,14 @@
 //! and B were found, Picard's operator maps the tube into itself: the solution exists, is unique and does not leave it.
 
 use super::taylor::{Ball, Taylor, above};
-use piaffe_model::Description;
-use piaffe_model::motion::HalfStep;
-use piaffe_number::Dual;
-use piaffe_number::Scalar;
 use crate::instants::{Instants, State};
 use crate::margins::Units;
 use crate::numbers::Numbers;
 use num_traits::Zero;
+use piaffe_model::Description;
+use piaffe_model::motion::HalfStep;
+use piaffe_number::Dual;
+use piaffe_number::Scalar;
 
 /// Half width of the tube in which β, rad, and β̇, in the unit of slow rates, must stay.
 const TUBE: f64 = 1e-6;

@@ -4,8 +4,8 @@
 //! it is from solving the equation that defines the function: y f = 1, y² = f, or (sin f)′ = f′ cos f.
 
 use super::taylor::{Taylor, UNIT, above};
-use piaffe_number::Scalar;
 use num_traits::Zero;
+use piaffe_number::Scalar;
 use std::ops::Div;
 
 /// Error of the plain sine and cosine. `libm`'s are within 1 ulp, which is at most an eighth of this.

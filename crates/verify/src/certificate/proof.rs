@@ -3,10 +3,10 @@
 use super::TOLERANCE;
 use super::enclosure::{Model, Piece};
 use super::taylor::Taylor;
-use piaffe_number::Scalar;
 use crate::constraint::Constraint;
 use crate::instants::{Instants, State};
 use crate::margins::{Units, clearance};
+use piaffe_number::Scalar;
 
 /// How often a piece is halved at most.
 const HALVINGS: usize = 20;

@@ -7,8 +7,8 @@
 //! Rounding is bounded, not switched: a sum or product of IEEE 754 is off by at most a share [`UNIT`] of itself, and
 //! every bound is made greater by more than its own evaluation can have lost (`above`).
 
-use piaffe_number::assigning;
 use num_traits::Zero;
+use piaffe_number::assigning;
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// Half the distance of 1 from the next number.

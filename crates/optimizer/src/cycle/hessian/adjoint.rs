@@ -4,8 +4,8 @@ use super::PhaseWork;
 use crate::cycle::phase::Phase;
 use crate::cycle::problem::CLOSURE;
 use crate::lgl::NODES;
-use piaffe_model::Description;
 use crate::stance::{Mesh, Stance};
+use piaffe_model::Description;
 use piaffe_model::units::Units;
 
 impl PhaseWork {

@@ -2,10 +2,10 @@
 
 use super::{Best, SLACK, weighed};
 use crate::four_legs::limits::Room;
-use piaffe_sqp::qp::interior::settings;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use nalgebra::DVector;
+use piaffe_sqp::qp::interior::settings;
 
 const BISECTIONS: usize = 60;
 
