@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{Derived, FAMILIES, GAITS, files, in_all_modes, specification};
+use common::{Derived, FAMILIES, GAITS, files, in_all_modes, shipped, specification};
 use piaffe_codegen::dynamics::{Input, whole_kernels};
 use piaffe_codegen::emit::{MATH_FILE, gait_source};
 use piaffe_codegen::mechanism::{Lever, Mechanism, Whole};
