@@ -6,7 +6,7 @@ mod common;
 use common::{Derived, FAMILIES, GAITS, files, in_all_modes, shipped, specification};
 use piaffe_codegen::dynamics::{Input, whole_kernels};
 use piaffe_codegen::emit::{MATH_FILE, gait_source};
-use piaffe_codegen::mechanism::{Lever, Mechanism, Whole};
+use piaffe_codegen::mechanism::{Lever, Mechanism, Mode, Whole};
 use piaffe_codegen::program::Program;
 use piaffe_codegen::spec::name::{ITEMS, type_name};
 use piaffe_codegen::{Generated, RobotFiles, SpecFile, generate, generate_families};
@@ -216,6 +216,23 @@ fn kernels_are_straight_lines() {
         assert!(law.functions >= expected, "{name}: {} functions", law.functions);
         assert!(law.longest <= 500, "{name}: {} bindings in one scope", law.longest);
         assert!(!source.contains("unsafe"), "{name}");
+    }
+}
+
+/// Those of modes that no shipped gait has are of the same kind.
+#[test]
+fn kernels_of_flight_are_straight_lines() {
+    for gait in GAITS {
+        let mechanism = in_all_modes(gait);
+        let source = gait_source(&mechanism, || (Vec::new(), String::new()), "", "whole", None, "flight").unwrap();
+        let mut law = Law::default();
+        law.visit_file(&syn::parse_file(&source).unwrap());
+        assert!(law.broken.is_empty(), "{gait}: {:?}", law.broken);
+        assert_eq!(
+            source.contains("pub fn flight_inverse_jacobian("),
+            mechanism.modes.contains(&Mode::Flight),
+            "{gait}"
+        );
     }
 }
 

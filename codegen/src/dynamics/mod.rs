@@ -84,7 +84,7 @@ pub fn family_kernels(family: &Family) -> (Model, FamilyKernels) {
     for mode in model.mechanism.modes.clone() {
         weighted.extend(sensitivity::of_mode(&mut model, mode));
         let into = transitions.iter().filter(|t| t.to == mode);
-        weighted.extend(into.filter_map(|t| sensitivity::of_transition(&mut model, *t)));
+        weighted.extend(into.map(|t| sensitivity::of_transition(&mut model, *t)));
     }
     let mut lumps = Lumps::default();
     for value in gait.iter_mut().flat_map(|k| &mut k.outputs).flat_map(|o| &mut o.values) {

@@ -7,7 +7,7 @@ use super::curvature::Instant;
 use super::kernel::Kernel;
 use super::lumps::Lumps;
 use super::model::Model;
-use super::transition::WeightedImpact;
+use super::transition::Results;
 use super::turn::Turn;
 use crate::expr::{Poly, Var};
 use crate::mechanism::{Mode, Transition};
@@ -80,17 +80,13 @@ fn terms(model: &mut Model, mode: Mode, turn: &Turn) -> Weighted {
     Weighted { kernel, sum, held: BTreeMap::new() }
 }
 
-/// The weighted sum of the impact in which a foot lands, if one does.
-pub fn of_transition(model: &mut Model, transition: Transition) -> Option<Weighted> {
-    let leg = transition.lands()?;
-    let WeightedImpact { velocities, xi, outputs, sum, solution, .. } = WeightedImpact::new(model, transition, leg);
+/// The weighted sum of what a transition does.
+pub fn of_transition(model: &mut Model, transition: Transition) -> Weighted {
+    let results = Results::new(model, transition);
     let kernel = Kernel::new(
         transition.kernel("_sensitivity"),
-        "Gradient in the lumped parameters of an impact's results, with the weights of its curvature's kernel.",
-    )
-    .input("q", model.q(0))
-    .input(velocities.name, velocities.symbols)
-    .input("xi", xi)
-    .input("outputs", outputs);
-    Some(Weighted { kernel, sum, held: solution })
+        "Gradient in the lumped parameters of what a transition does, with the weights of its curvature's kernel.",
+    );
+    let kernel = results.inputs.into_iter().fold(kernel, |kernel, (name, symbols)| kernel.input(name, symbols));
+    Weighted { kernel, sum: results.sum, held: results.solution }
 }

@@ -4,7 +4,7 @@
 //! A landing foot j that comes to rest takes an impulse that does no work in motions with foot j at
 //! rest. In those, the generalized momenta before and after are equal: `Aq⁽ʲ⁾ q̇⁺ = P⁽ʲ⁾(Ẋ⁻)`.
 
-use super::curvature::symbols;
+use super::curvature::{second_derivatives, symbols};
 use super::kernel::Kernel;
 use super::model::{Model, Origin, scaled};
 use super::sharing;
@@ -95,7 +95,18 @@ pub fn kernel(model: &mut Model, transition: Transition) -> Kernel {
 pub fn curvature(model: &mut Model, transition: Transition) -> Kernel {
     match transition.lands() {
         Some(leg) => landing_curvature(model, transition, leg),
-        None => TakeOff::new(model, transition).curvature(model, transition),
+        None => {
+            let (weights, sum) = TakeOff::new(model, transition).weighted(model);
+            let kernel = Kernel::new(
+                transition.kernel("_curvature"),
+                "Gradient in (q, q̇, q̈) and second derivatives of a take-off's results, weighted: r, v, lift.",
+            )
+            .input("q", model.q(0))
+            .input("qd", model.q(1))
+            .input("qdd", model.q(2))
+            .input("weights", weights);
+            second_derivatives(model, kernel, &sum)
+        }
     }
 }
 
@@ -121,30 +132,30 @@ pub fn impact(model: &mut Model, leg: usize) -> Kernel {
 
 /// The impact on one foot at the end of a mode, with the velocities after as symbols, so that what depends on them can be
 /// differentiated by parts.
-pub struct Impact {
+struct Impact {
     /// Velocities before that are given: q̇⁻ after single support, which knows ṗ⁻ from it, else Ẋ⁻.
-    pub velocities: Velocities,
+    velocities: Velocities,
     /// Aq about the landing foot.
-    pub inertia: Vec<Vec<Poly>>,
+    inertia: Vec<Vec<Poly>>,
     /// Momenta before.
-    pub before: Vec<Poly>,
+    before: Vec<Poly>,
     /// Symbols of q̇⁺.
-    pub plus: Vec<Var>,
+    plus: Vec<Var>,
     /// Momenta before minus after: zero.
-    pub residual: Vec<Poly>,
+    residual: Vec<Poly>,
     /// Impulse, vertical velocity after of the foot that leaves, if one does, of the landing foot before; where the platform rolls
     /// also how real feet share (see `sharing::landing`).
-    pub outputs: Vec<Poly>,
+    outputs: Vec<Poly>,
 }
 
 /// Rates under the name of their input.
-pub struct Velocities {
-    pub name: &'static str,
-    pub symbols: Vec<Var>,
+struct Velocities {
+    name: &'static str,
+    symbols: Vec<Var>,
 }
 
 impl Impact {
-    pub fn new(model: &mut Model, transition: Transition, leg: usize) -> Impact {
+    fn new(model: &mut Model, transition: Transition, leg: usize) -> Impact {
         let qd = model.q(1);
         let (velocities, platform) = match transition.leaves() {
             Some(stance) => {
@@ -256,22 +267,22 @@ fn landing(model: &mut Model, transition: Transition, leg: usize) -> Kernel {
 }
 
 /// An impact's results, each with its weight, and the adjoint of its linear system.
-pub struct WeightedImpact {
-    pub velocities: Velocities,
+struct WeightedImpact {
+    velocities: Velocities,
     /// Weights of q̇⁺.
-    pub xi: Vec<Var>,
+    xi: Vec<Var>,
     /// Weights of the other results.
-    pub outputs: Vec<Var>,
+    outputs: Vec<Var>,
     /// Symbols of q̇⁺.
-    pub plus: Vec<Var>,
+    plus: Vec<Var>,
     /// A sum whose partial derivatives, with q̇⁺ and the adjoint held, are total ones of the weighted results.
-    pub sum: Poly,
+    sum: Poly,
     /// q̇⁺ and the adjoint, to be inserted after differentiation.
-    pub solution: BTreeMap<Var, Poly>,
+    solution: BTreeMap<Var, Poly>,
 }
 
 impl WeightedImpact {
-    pub fn new(model: &mut Model, transition: Transition, leg: usize) -> WeightedImpact {
+    fn new(model: &mut Model, transition: Transition, leg: usize) -> WeightedImpact {
         let impact = Impact::new(model, transition, leg);
         let q = model.q(0);
         let xi = symbols(model, "xi", q.len());
@@ -339,56 +350,82 @@ fn landing_curvature(model: &mut Model, transition: Transition, leg: usize) -> K
         .matrix("q_plus", q_plus, "∂²/∂q∂q̇⁺")
 }
 
-/// The mass centre from the foot that leaves, and its velocity: where its parabola begins.
+/// A foot that has stood leaves: where the parabola of the mass centre begins, and how the foot does.
 struct TakeOff {
+    /// Mass centre from the foot.
     place: Vec<Poly>,
     velocity: Vec<Poly>,
+    /// Vertical acceleration of the foot in flight. It was at rest, so its height begins like lift · t²/2.
+    lift: Poly,
 }
 
 impl TakeOff {
     fn new(model: &mut Model, transition: Transition) -> TakeOff {
-        let centre = model.place(Origin::MassCentre);
         let foot = transition.leaves().map_or(zero(), |leg| model.foot(leg));
-        let place = subtract(&centre, &foot);
+        let place = subtract(&model.place(Origin::MassCentre), &foot);
         let velocity = model.rate(&place);
-        TakeOff { place: model.components(&place), velocity: model.components(&velocity) }
+        let lift = -&(&model.rate(&velocity)[1] + &model.quantities.gravity);
+        TakeOff { place: model.components(&place), velocity: model.components(&velocity), lift }
+    }
+
+    /// All of it, each with its weight, and the weights.
+    fn weighted(&self, model: &mut Model) -> (Vec<Var>, Poly) {
+        let weights = symbols(model, "w", self.place.len() + self.velocity.len() + 1);
+        let terms = self.place.iter().chain(&self.velocity).chain([&self.lift]);
+        let weighted = weights.iter().zip(terms).map(|(weight, term)| &Poly::from(*weight) * term);
+        let sum = weighted.fold(Poly::zero(), |sum, term| &sum + &term);
+        (weights, sum)
     }
 
     fn kernel(self, model: &Model, transition: Transition) -> Kernel {
-        let (q, qd) = (model.q(0), model.q(1));
-        let by: Vec<Var> = q.iter().chain(&qd).copied().collect();
-        let jacobians = (model.jacobian(&self.place, &q), model.jacobian(&self.velocity, &by));
+        let (q, qd, qdd) = (model.q(0), model.q(1), model.q(2));
+        let to_velocity: Vec<Var> = [&q[..], &qd].concat();
+        let to_acceleration: Vec<Var> = [&q[..], &qd, &qdd].concat();
+        let r_q = model.jacobian(&self.place, &q);
+        let v_w = model.jacobian(&self.velocity, &to_velocity);
+        let gradient = model.jacobian(std::slice::from_ref(&self.lift), &to_acceleration).remove(0);
         Kernel::new(
             transition.kernel(""),
-            "Mass centre and its velocity when this foot, at rest so far, leaves the ground: where its parabola begins. From the foot, \
+            "What begins when this foot, at rest so far, leaves the ground: the mass centre's parabola, seen from the foot, and the foot's rise; \
              with Jacobians.",
         )
         .input("q", q)
         .input("qd", qd)
+        .input("qdd", qdd)
         .vector("r", self.place, "mass centre, m")
         .vector("v", self.velocity, "its velocity, m/s")
-        .matrix("r_q", jacobians.0, "∂r/∂q")
-        .matrix("v_w", jacobians.1, "∂v/∂(q, q̇)")
+        .scalar("lift", self.lift, "vertical acceleration of the foot in flight, m/s²")
+        .matrix("r_q", r_q, "∂r/∂q")
+        .matrix("v_w", v_w, "∂v/∂(q, q̇)")
+        .vector("lift_w", gradient, "∂lift/∂(q, q̇, q̈)")
     }
+}
 
-    fn curvature(self, model: &mut Model, transition: Transition) -> Kernel {
-        let (q, qd) = (model.q(0), model.q(1));
-        let weights = symbols(model, "w", self.place.len() + self.velocity.len());
-        let mut sum = Poly::zero();
-        for (weight, term) in weights.iter().zip(self.place.iter().chain(&self.velocity)) {
-            sum += &(&Poly::from(*weight) * term);
+/// A sum of weighted results: the inputs and the sum.
+pub struct Results {
+    pub inputs: Vec<(&'static str, Vec<Var>)>,
+    pub sum: Poly,
+    /// To be inserted after differentiation.
+    pub solution: BTreeMap<Var, Poly>,
+}
+
+impl Results {
+    /// Of what a transition does.
+    pub fn new(model: &mut Model, transition: Transition) -> Results {
+        let q = ("q", model.q(0));
+        match transition.lands() {
+            None => {
+                let (weights, sum) = TakeOff::new(model, transition).weighted(model);
+                let inputs = vec![q, ("qd", model.q(1)), ("qdd", model.q(2)), ("weights", weights)];
+                Results { inputs, sum, solution: BTreeMap::new() }
+            }
+            Some(leg) => {
+                let impact = WeightedImpact::new(model, transition, leg);
+                let velocities = (impact.velocities.name, impact.velocities.symbols);
+                let inputs = vec![q, velocities, ("xi", impact.xi), ("outputs", impact.outputs)];
+                Results { inputs, sum: impact.sum, solution: impact.solution }
+            }
         }
-        let by_q: Vec<Poly> = q.iter().map(|s| model.ring.derivative(&sum, *s)).collect();
-        let (q_q, q_qd) = (model.hessian(&by_q, &q), model.jacobian(&by_q, &qd));
-        Kernel::new(
-            transition.kernel("_curvature"),
-            "Second derivatives of a take-off's results, weighted: r, then v. In q̇ twice there are none.",
-        )
-        .input("q", q)
-        .input("qd", qd)
-        .input("weights", weights)
-        .matrix("q_q", q_q, "∂²/∂q∂q")
-        .matrix("q_qd", q_qd, "∂²/∂q∂q̇")
     }
 }
 

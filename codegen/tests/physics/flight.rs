@@ -1,7 +1,9 @@
 //! Laws of flight: the mass centre falls like a stone, and nothing turns the robot about it.
 
 use super::common::{Derived, FAMILIES, GAITS, in_all_modes, shipped};
-use super::numbers::{along, assert_close, dot, is_positive_definite, momentum, product, transposed_product};
+use super::numbers::{
+    along, assert_close, difference, dot, is_positive_definite, momentum, product, transposed_product,
+};
 use super::robots::Draws;
 use super::state::State;
 use super::support::{largest, prescribed, with_foot_at_rest};
@@ -146,7 +148,7 @@ pub fn take_off(d: &Derived, s: &State, leg: usize) {
     let m = d.mechanism();
     let positions = m.positions();
     let name = |what: &str| format!("{what}{}", leg + 1);
-    let found = d.run(&name("takeoff"), &[&s.q, &s.qd]);
+    let found = d.run(&name("takeoff"), &[&s.q, &s.qd, &s.qdd]);
     let (r, v) = (found.get("r"), found.get("v"));
     let xd = with_foot_at_rest(d, leg, s);
     let centre = d.run("centre_of_mass", &[&s.x, &xd]);
@@ -158,6 +160,15 @@ pub fn take_off(d: &Derived, s: &State, leg: usize) {
     let of_centre = m.total_mass() * (r[0] * v[1] - r[1] * v[0]);
     let scale = about_foot.abs().max(of_centre.abs()).max(1.0);
     assert_close("σ_S = σ_G + M r × v", &[about_centre + of_centre], &[about_foot], EXACT * scale);
+    // The foot's own height in the flight that follows: it starts at rest, and the mass centre falls.
+    let height = |t: f64| {
+        let q = along(&along(&s.q, t, &s.qd), 0.5 * t * t, &s.qdd);
+        let of_foot = d.run("flight_placement", &[&q]).get("swing")[leg * positions + 1];
+        of_foot + r[1] + v[1] * t - 0.5 * m.gravity * t * t
+    };
+    let rate = |t: f64| difference(|h| vec![height(t + h)]);
+    assert_close("height, velocity of the foot", &[height(0.0), rate(0.0)[0]], &[0.0, 0.0], 1e-8);
+    assert_close("lift", &difference(rate), found.get("lift"), 1e-6);
     // Places seen from the mass centre and from the foot.
     let [seen, heights] = [Mode::Flight, Mode::Stance(leg)].map(|mode| {
         let p = d.run(&mode.kernel("placement"), &[&s.q]).get("p").to_vec();

@@ -53,30 +53,63 @@ pub fn of_mode(d: &Derived, s: &State, mode: Mode) {
     }
 }
 
-/// What a transition does, by q and the velocities before.
-pub fn of_transition(d: &Derived, s: &State, transition: Transition) {
+/// What an impact does, by q and the velocities before.
+pub fn of_impact(d: &Derived, s: &State, transition: Transition) {
     let name = transition.kernel("");
     let (n, w) = (s.q.len(), before(d, s, transition));
-    let values = |names: &[&'static str], w: &[f64]| -> Vec<f64> {
-        let r = d.run(&name, &[&w[..n], &w[n..]]);
-        names.iter().flat_map(|v| r.get(v).to_vec()).collect()
-    };
-    let now = d.run(&name, &[&w[..n], &w[n..]]);
-    if transition.lands().is_none() {
-        let place = |q: &[f64]| d.run(&name, &[q, &s.qd]).get("r").to_vec();
-        assert_close("∂r/∂q", now.get("r_q"), &differences(&s.q, place), TOLERANCE);
-        assert_close("∂v/∂w", now.get("v_w"), &differences(&w, |w| values(&["v"], w)), TOLERANCE);
-        return;
-    }
     let rows: &[&'static str] = match transition.leaves() {
         Some(_) => &["qd_plus", "impulse", "leaving", "landing"],
         None => &["qd_plus", "impulse", "landing"],
     };
-    let expected = differences(&w, |w| values(rows, w));
+    let values = |w: &[f64]| -> Vec<f64> {
+        let r = d.run(&name, &[&w[..n], &w[n..]]);
+        rows.iter().flat_map(|v| r.get(v).to_vec()).collect()
+    };
+    let expected = differences(&w, values);
+    let now = d.run(&name, &[&w[..n], &w[n..]]);
     assert_close(&name, now.get("jacobian"), &expected, TOLERANCE * largest(&expected));
 }
 
-/// q and the velocities that are given to a transition.
+/// Jacobians and weighted second derivatives of a take-off.
+pub fn of_take_off(d: &Derived, s: &State, draws: &mut Draws, transition: Transition) {
+    let (n, w) = (s.q.len(), [&s.q[..], &s.qd, &s.qdd].concat());
+    let run = |w: &[f64]| d.run(&transition.kernel(""), &[&w[..n], &w[n..2 * n], &w[2 * n..]]);
+    let now = run(&w);
+    // Each with the gradient in (q, q̇, q̈), of which only the parts that are not zero are given.
+    let all = |r: &Outputs| -> Vec<f64> {
+        let [r_q, v_w, lift_w] = ["r_q", "v_w", "lift_w"].map(|output| r.get(output));
+        let padded = |rows: &[f64], width: usize| -> Vec<f64> {
+            rows.chunks(width).flat_map(|row| [row, &vec![0.0; 3 * n - width]].concat()).collect()
+        };
+        [padded(r_q, n), padded(v_w, 2 * n), lift_w.to_vec()].concat()
+    };
+    let values = |w: &[f64]| {
+        let r = run(w);
+        [r.get("r"), r.get("v"), r.get("lift")].concat()
+    };
+    let expected = differences(&w, values);
+    assert_close("∂(r, v, lift)", &all(&now), &expected, TOLERANCE * largest(&expected));
+    let kernel = transition.kernel("_curvature");
+    let weights = weights(d, &kernel, "weights", draws);
+    let curvature = d.run(&kernel, &[&s.q, &s.qd, &s.qdd, &weights]);
+    let gradient = |w: &[f64]| transposed_product(&all(&run(w)), &weights);
+    let size = largest(&expected);
+    assert_close("gradient", curvature.get("gradient"), &gradient(&w), 1e-12 * size);
+    second_derivatives_are(&curvature, &differences(&w, gradient), n);
+}
+
+/// The blocks of second derivatives against a matrix of them in (q, q̇, q̈).
+fn second_derivatives_are(found: &Outputs, expected: &[f64], n: usize) {
+    let block = |row: usize, column: usize| -> Vec<f64> {
+        (0..n).flat_map(|i| expected[(row * n + i) * 3 * n + column * n..][..n].to_vec()).collect()
+    };
+    let size = largest(expected);
+    for (output, row, column) in [("q_q", 0, 0), ("q_qd", 0, 1), ("q_qdd", 0, 2), ("qd_qd", 1, 1)] {
+        assert_close(output, found.get(output), &block(row, column), TOLERANCE * size);
+    }
+}
+
+/// q and the velocities that are given to an impact.
 fn before(d: &Derived, s: &State, transition: Transition) -> Vec<f64> {
     let velocities = d.kernel(&transition.kernel("")).inputs[1].name;
     [&s.q[..], if velocities == "qd" { &s.qd } else { &s.xd }].concat()
@@ -172,14 +205,7 @@ pub fn of_curvature(d: &Derived, s: &State, draws: &mut Draws, mode: Mode) {
     };
     let run = |w: &[f64]| of_forces(w, &phi);
     let now = run(&w);
-    let gradient = differences(&w, |w| run(w).get("gradient").to_vec());
-    let block = |row: usize, column: usize| -> Vec<f64> {
-        (0..n).flat_map(|i| gradient[(row * n + i) * 3 * n + column * n..][..n].to_vec()).collect()
-    };
-    let size = largest(&gradient);
-    for (output, row, column) in [("q_q", 0, 0), ("q_qd", 0, 1), ("q_qdd", 0, 2), ("qd_qd", 1, 1)] {
-        assert_close(output, now.get(output), &block(row, column), TOLERANCE * size);
-    }
+    second_derivatives_are(&now, &differences(&w, |w| run(w).get("gradient").to_vec()), n);
     // The sum itself, but for the reaction's part, from the reduced model and the kernels of each term.
     let value = |w: &[f64]| -> Vec<f64> {
         let (q, qd, qdd) = (&w[..n], &w[n..2 * n], &w[2 * n..]);
@@ -211,29 +237,12 @@ pub fn of_curvature(d: &Derived, s: &State, draws: &mut Draws, mode: Mode) {
     assert_close("gradient", without_reaction.get("gradient"), &differences(&w, value), TOLERANCE);
 }
 
-/// The weighted second derivatives of a transition.
-pub fn of_transitions_curvature(d: &Derived, s: &State, draws: &mut Draws, transition: Transition) {
+/// The weighted second derivatives of an impact.
+pub fn of_impacts_curvature(d: &Derived, s: &State, draws: &mut Draws, transition: Transition) {
     let (kernel, values) = (transition.kernel("_curvature"), transition.kernel(""));
     let (n, w) = (s.q.len(), before(d, s, transition));
     let columns = w.len();
     let mut found = vec![0.0; columns * columns];
-    if transition.lands().is_none() {
-        let weights = weights(d, &kernel, "weights", draws);
-        let curvature = d.run(&kernel, &[&w[..n], &w[n..], &weights]);
-        for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
-            found[i * columns + j] = curvature.get("q_q")[i * n + j];
-            let mixed = curvature.get("q_qd")[i * n + j];
-            (found[i * columns + n + j], found[(n + j) * columns + i]) = (mixed, mixed);
-        }
-        let gradient = |w: &[f64]| {
-            let r = d.run(&values, &[&w[..n], &w[n..]]);
-            let (place, velocity) = weights.split_at(r.get("r").len());
-            let by_q = transposed_product(r.get("r_q"), place);
-            let by_w = transposed_product(r.get("v_w"), velocity);
-            by_w.iter().enumerate().map(|(k, x)| x + by_q.get(k).unwrap_or(&0.0)).collect()
-        };
-        return assert_close("take-off's Hessian", &found, &differences(&w, gradient), TOLERANCE);
-    }
     let [xi, outputs] = ["xi", "outputs"].map(|input| weights(d, &kernel, input, draws));
     let all = [&xi[..], &outputs].concat();
     let jacobian = |w: &[f64]| {

@@ -61,8 +61,12 @@ fn obeys_all_laws(mechanism: &Mechanism, draws: &mut Draws) {
             jacobians::of_heights(&d, &s, draws, mode);
         }
         for transition in mechanism.transitions() {
-            jacobians::of_transition(&d, &s, transition);
-            jacobians::of_transitions_curvature(&d, &s, draws, transition);
+            if transition.lands().is_some() {
+                jacobians::of_impact(&d, &s, transition);
+                jacobians::of_impacts_curvature(&d, &s, draws, transition);
+            } else {
+                jacobians::of_take_off(&d, &s, draws, transition);
+            }
         }
         impact::both_feet(&d, &s);
     }
