@@ -8,12 +8,14 @@
 #![forbid(unsafe_code)]
 
 pub mod family;
+pub mod limit;
 pub mod motion;
 mod numbers;
 pub mod units;
 pub mod whole;
 
 use crate::motion::Costs;
+pub use limit::Limit;
 pub use numbers::Lever;
 use std::borrow::Cow;
 

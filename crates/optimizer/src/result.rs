@@ -372,8 +372,8 @@ impl GaitResult {
             .conflicts
             .iter()
             .map(|c| {
-                let Label { name, half_step, time } = c.label.clone();
-                ConflictEntry { constraint: name, half_step, time, violation: c.violation, weight: c.weight }
+                let Label { half_step, time, .. } = c.label;
+                ConflictEntry { constraint: c.label.name(), half_step, time, violation: c.violation, weight: c.weight }
             })
             .collect();
         (self.status, self.message) = match local.status {

@@ -6,7 +6,7 @@
 //! Negative means violated.
 
 use super::receipt::Finding;
-use piaffe_model::Description;
+use piaffe_model::{Description, Limit};
 
 /// A margin below this makes a constraint active.
 pub const ACTIVE: f64 = 1e-4;
@@ -74,29 +74,38 @@ impl Constraint {
         matches!(self, Constraint::Touchdown | Constraint::MeanSpeed)
     }
 
+    /// Which limit or equation it is.
+    pub fn limit(self) -> Limit {
+        match self {
+            Constraint::Torque(_) => Limit::Torque,
+            Constraint::Speed(_) => Limit::TorqueSpeed,
+            Constraint::LowerStop(_) => Limit::LowerStop,
+            Constraint::UpperStop(_) => Limit::UpperStop,
+            Constraint::VerticalForce => Limit::VerticalForce,
+            Constraint::Friction => Limit::Friction,
+            Constraint::Clearance => Limit::Clearance,
+            Constraint::Touchdown => Limit::Touchdown,
+            Constraint::Shortest => Limit::ShortestHalfStep,
+            Constraint::Longest => Limit::LongestHalfStep,
+            Constraint::VerticalImpulse => Limit::VerticalImpulse,
+            Constraint::ImpulseFriction => Limit::ImpulseFriction,
+            Constraint::Leaving => Limit::Leaving,
+            Constraint::MeanSpeed => Limit::MeanSpeed,
+            Constraint::PlatformHeight => Limit::PlatformHeight,
+            Constraint::Height(_) => Limit::Height,
+        }
+    }
+
     /// What a person reads.
     pub fn name(self, description: &Description) -> String {
-        let joint = |j: usize| description.joints.get(j).map_or("?", |joint| joint.name);
-        match self {
-            Constraint::Torque(j) => format!("torque of {}", joint(j)),
-            Constraint::Speed(j) => format!("torque–speed of {}", joint(j)),
-            Constraint::LowerStop(j) => format!("range of {} (lower stop)", joint(j)),
-            Constraint::UpperStop(j) => format!("range of {} (upper stop)", joint(j)),
-            Constraint::VerticalForce => "vertical force".into(),
-            Constraint::Friction => "friction".into(),
-            Constraint::Clearance => "swing clearance".into(),
-            Constraint::Touchdown => "touchdown height".into(),
-            Constraint::Shortest => "shortest half step".into(),
-            Constraint::Longest => "longest half step".into(),
-            Constraint::VerticalImpulse => "vertical impulse".into(),
-            Constraint::ImpulseFriction => "friction of the impulse".into(),
-            Constraint::Leaving => "leaving foot".into(),
-            Constraint::MeanSpeed => "mean speed".into(),
-            Constraint::PlatformHeight => "platform height".into(),
-            Constraint::Height(point) => {
-                format!("height of {}", description.points.get(point).map_or("?", |point| point.name))
+        use Constraint::*;
+        self.limit().of(match self {
+            Torque(j) | Speed(j) | LowerStop(j) | UpperStop(j) => {
+                description.joints.get(j).map_or("?", |joint| joint.name)
             }
-        }
+            Height(point) => description.points.get(point).map_or("?", |point| point.name),
+            _ => "",
+        })
     }
 }
 

@@ -6,18 +6,20 @@
 
 use super::{Limits, PathConstraint};
 use crate::instant::Quantities;
-use piaffe_model::Description;
+use piaffe_model::{Description, Limit};
 use piaffe_number::Scalar;
 
 pub fn constraints<T: Scalar>(d: &Description, limits: &Limits<T>, y: &Quantities) -> Vec<PathConstraint<T>> {
-    let above = |name: String, quantity: usize, least: T| {
-        PathConstraint::linear(name, d.leg_length(), -least, vec![(quantity, T::from(1.0))])
+    let above = |limit: Limit, quantity: usize, least: T| {
+        PathConstraint::linear(limit, d.leg_length(), -least, vec![(quantity, T::from(1.0))])
     };
-    let mut list = vec![above("platform height".into(), y.height(), limits.min_platform_height)];
+    let mut list = vec![above(Limit::PlatformHeight, y.height(), limits.min_platform_height)];
     for (point, quantity) in d.lowest.iter().zip(y.heights()) {
-        let name = format!("height of {}", d.points[*point].name);
         // At the first instant it is that of the last: there both feet are on the ground.
-        list.push(PathConstraint { at_start: false, ..above(name, quantity, limits.body_clearance) });
+        list.push(PathConstraint {
+            at_start: false,
+            ..above(Limit::Height, quantity, limits.body_clearance).of(d.points[*point].name)
+        });
     }
     list
 }

@@ -3,8 +3,8 @@
 //! Impulse upward; tangential impulse at most μ times it; vertical velocity of the leaving foot ≥ 0.
 
 use super::sharing::{applies, first, length, offsets, second};
-use piaffe_model::Description;
 use piaffe_model::units::Units;
+use piaffe_model::{Description, Limit};
 use piaffe_number::Scalar;
 
 /// Formulas on the results of a touchdown kernel.
@@ -34,12 +34,13 @@ impl<T: Scalar> ImpactConstraints<T> {
         }
     }
 
-    pub fn name(&self, i: usize) -> &'static str {
+    /// Which limit value `i` is.
+    pub fn limit(&self, i: usize) -> Limit {
         match (i, self.lateral) {
-            (0, _) => "vertical impulse",
-            (1, _) | (2, false) => "friction of the impulse",
-            _ if i < self.of_virtual_leg() => "leaving foot",
-            _ => "friction of the impulse on a real foot",
+            (0, _) => Limit::VerticalImpulse,
+            (1, _) | (2, false) => Limit::ImpulseFriction,
+            _ if i < self.of_virtual_leg() => Limit::Leaving,
+            _ => Limit::ImpulseFrictionOfFoot,
         }
     }
 

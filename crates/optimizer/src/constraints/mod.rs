@@ -17,15 +17,16 @@ pub use impact::ImpactConstraints;
 pub use limits::{JointLimits, Limits};
 
 use crate::instant::Quantities;
-use piaffe_model::Description;
+use piaffe_model::{Description, Limit};
 use piaffe_number::Scalar;
 use sharing::Share;
 
 /// A constraint on the quantities of an instant: `value ≥ 0`.
 #[derive(Clone, Debug)]
 pub struct PathConstraint<T = f64> {
-    /// In words, as reports show it.
-    pub name: String,
+    pub limit: Limit,
+    /// The joint, leg or point that it is of, as reports show it; empty where there is but one.
+    pub of: String,
     pub form: Form<T>,
     /// Unit in which the value is measured.
     pub unit: f64,
@@ -62,8 +63,12 @@ pub fn path_constraints_of<T: Scalar>(description: &Description, limits: &Limits
 }
 
 impl<T: Scalar> PathConstraint<T> {
-    fn linear(name: String, unit: f64, offset: T, terms: Vec<(usize, T)>) -> PathConstraint<T> {
-        PathConstraint { name, form: Form::Linear { offset, terms }, unit, at_start: true }
+    fn linear(limit: Limit, unit: f64, offset: T, terms: Vec<(usize, T)>) -> PathConstraint<T> {
+        PathConstraint { limit, of: String::new(), form: Form::Linear { offset, terms }, unit, at_start: true }
+    }
+
+    fn of(self, what: impl Into<String>) -> PathConstraint<T> {
+        PathConstraint { of: what.into(), ..self }
     }
 
     /// Scaled value for the quantities of an instant.

@@ -2,24 +2,24 @@
 
 use super::{Form, Limits, PathConstraint};
 use crate::instant::Quantities;
-use piaffe_model::Description;
+use piaffe_model::{Description, Limit};
 use piaffe_number::Scalar;
 
 pub fn constraints<T: Scalar>(d: &Description, limits: &Limits<T>, y: &Quantities) -> Vec<PathConstraint<T>> {
     let weight = d.total_mass() * d.gravity;
     let mut list = vec![PathConstraint::linear(
-        "vertical force".into(),
+        Limit::VerticalForce,
         weight,
         -limits.min_vertical_force,
         vec![(y.force(1), T::from(1.0))],
     )];
     if d.lateral {
         let form = Form::Cone { normal: y.force(1), factor: limits.friction, tangential: vec![y.force(0), y.force(2)] };
-        list.push(PathConstraint { name: "friction".into(), form, unit: weight, at_start: true });
+        list.push(PathConstraint { limit: Limit::Friction, of: String::new(), form, unit: weight, at_start: true });
     } else {
         for sign in [1.0, -1.0] {
             let terms = vec![(y.force(1), limits.friction), (y.force(0), T::from(sign))];
-            list.push(PathConstraint::linear("friction".into(), weight, T::zero(), terms));
+            list.push(PathConstraint::linear(Limit::Friction, weight, T::zero(), terms));
         }
     }
     list

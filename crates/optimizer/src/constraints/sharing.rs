@@ -14,7 +14,7 @@
 
 use super::{Form, Limits, PathConstraint};
 use crate::instant::{Quantities, Shared};
-use piaffe_model::{Description, HalfSteps, Leg};
+use piaffe_model::{Description, HalfSteps, Leg, Limit};
 use piaffe_number::{Dual, Scalar};
 
 /// Mounts nearer than this share of a leg are at one place.
@@ -106,23 +106,25 @@ pub fn constraints<T: Scalar>(d: &Description, limits: &Limits<T>, y: &Quantitie
     let leg = &d.legs[0];
     let share = 1.0 / leg.members.len() as f64;
     for (member, offset) in leg.members.iter().zip(offsets(d)) {
-        let mut add = |name: String, unit: f64, joint: usize, of: Of<T>| {
-            let form = Form::Share(Share { quantities: quantities(d, y, joint), offset, weight, of });
-            list.push(PathConstraint { name: format!("{name} of {}", member.name), form, unit, at_start: true });
+        let mut add = |limit: Limit, of: String, unit: f64, joint: usize, formula: Of<T>| {
+            let form = Form::Share(Share { quantities: quantities(d, y, joint), offset, weight, of: formula });
+            list.push(PathConstraint { limit, of, form, unit, at_start: true });
         };
-        add("vertical force".into(), weight, 0, Of::Vertical(limits.min_vertical_force.scale(share)));
-        add("friction".into(), weight, 0, Of::Friction(limits.friction));
+        let foot = || member.name.to_string();
+        add(Limit::VerticalForceOfFoot, foot(), weight, 0, Of::Vertical(limits.min_vertical_force.scale(share)));
+        add(Limit::FrictionOfFoot, foot(), weight, 0, Of::Friction(limits.friction));
         for (k, j) in (leg.first_joint..leg.end_joint).enumerate() {
             let (joint, actuator) = (&d.joints[j], &limits.joints[j]);
+            let joint_of_leg = || format!("{} of {}", joint.name, member.name);
             let bound = actuator.max_torque.scale(share);
             for sign in [1.0, -1.0] {
                 let limit = Of::Actuator { bound, torque: T::from(sign), rate: 0.0 };
-                add(format!("torque of {}", joint.name), joint.max_torque * share, k, limit);
+                add(Limit::Torque, joint_of_leg(), joint.max_torque * share, k, limit);
             }
             let slope = (actuator.unloaded_speed - actuator.loaded_speed) / bound;
             for (rate, torque) in [(1.0, slope), (1.0, -slope), (-1.0, slope), (-1.0, -slope)] {
                 let limit = Of::Actuator { bound: actuator.unloaded_speed, torque, rate };
-                add(format!("torque–speed of {}", joint.name), joint.unloaded_speed, k, limit);
+                add(Limit::TorqueSpeed, joint_of_leg(), joint.unloaded_speed, k, limit);
             }
         }
     }

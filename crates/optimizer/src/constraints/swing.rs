@@ -5,10 +5,10 @@
 
 use super::{Limits, PathConstraint};
 use crate::instant::Quantities;
-use piaffe_model::Description;
+use piaffe_model::{Description, Limit};
 use piaffe_number::Scalar;
 
 pub fn constraint<T: Scalar>(d: &Description, limits: &Limits<T>, y: &Quantities) -> PathConstraint<T> {
     let terms = vec![(y.clearance(), T::from(1.0))];
-    PathConstraint::linear("swing clearance".into(), d.leg_length(), -limits.swing_clearance, terms)
+    PathConstraint::linear(Limit::Clearance, d.leg_length(), -limits.swing_clearance, terms)
 }

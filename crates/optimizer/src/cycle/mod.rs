@@ -26,7 +26,7 @@ use hessian::Workspace;
 use phase::Phase;
 use piaffe_model::motion::{Costs, Criterion, HalfStep, Motion};
 use piaffe_model::units::Units;
-use piaffe_model::{Description, Gait, HalfSteps};
+use piaffe_model::{Description, Gait, HalfSteps, Limit};
 pub use problem::{CLOSURE, Place};
 pub use sample::Sample;
 pub use still::{AT_REST, Still};
@@ -151,11 +151,20 @@ impl Variables {
 /// Which constraint a row is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Label {
-    pub name: String,
+    pub limit: Limit,
+    /// What it is of; empty where there is but one.
+    pub of: String,
     /// 1-based.
     pub half_step: usize,
     /// s.
     pub time: f64,
+}
+
+impl Label {
+    /// In words, as reports show it.
+    pub fn name(&self) -> String {
+        self.limit.of(&self.of)
+    }
 }
 
 impl<'a> Cycle<'a> {

@@ -11,7 +11,7 @@ use crate::constraints::PathConstraint;
 use crate::constraints::sharing::pitches;
 use crate::cost::Drive;
 use crate::lgl::NODES;
-use piaffe_model::Description;
+use piaffe_model::{Description, Limit};
 use piaffe_sqp as sqp;
 use piaffe_sqp::{Problem, Undefined, Values, dot};
 
@@ -158,12 +158,14 @@ impl Cycle<'_> {
     pub fn label(&self, i: usize) -> Label {
         match self.place(i) {
             Place::Instant { phase, share, constraint } => Label {
-                name: self.path[constraint].name.clone(),
+                limit: self.path[constraint].limit,
+                of: self.path[constraint].of.clone(),
                 half_step: phase + 1,
                 time: share * self.phases[phase].duration(),
             },
             Place::Impact { phase, constraint } => Label {
-                name: self.impact.name(constraint).into(),
+                limit: self.impact.limit(constraint),
+                of: String::new(),
                 half_step: phase + 1,
                 time: self.phases[phase].duration(),
             },
@@ -172,21 +174,22 @@ impl Cycle<'_> {
 
     /// Which equality `i` is, in words.
     pub fn equality_label(&self, i: usize) -> Label {
-        let names = ["closure of β", "closure of σ", "touchdown height"];
+        let closure = [Limit::ClosureOfBeta, Limit::ClosureOfSigma, Limit::Touchdown];
         let speed = self.speed_equation();
-        let (name, phase) = match i {
-            _ if i < speed => (names[i % CLOSURE], i / CLOSURE),
-            _ if i == speed => return Label { name: "mean speed".into(), half_step: self.phases.len(), time: 0.0 },
-            _ if i < equalities(self.description()) => ("pitching at the impact on real feet", i - speed - 1),
+        let label = |limit, half_step, time| Label { limit, of: String::new(), half_step, time };
+        let (limit, phase) = match i {
+            _ if i < speed => (closure[i % CLOSURE], i / CLOSURE),
+            _ if i == speed => return label(Limit::MeanSpeed, self.phases.len(), 0.0),
+            _ if i < equalities(self.description()) => (Limit::Pitching, i - speed - 1),
             _ => {
                 let held = self.holding().nth(i - equalities(self.description()));
                 let (phase, joint, node) = held.unwrap_or_default();
-                let name = format!("{} held still", self.description().joints[joint].name);
+                let of = self.description().joints[joint].name.into();
                 let time = self.instant(phase, node) * self.phases[phase].duration();
-                return Label { name, half_step: phase + 1, time };
+                return Label { of, ..label(Limit::Still, phase + 1, time) };
             }
         };
-        Label { name: name.into(), half_step: phase + 1, time: self.phases[phase].duration() }
+        label(limit, phase + 1, self.phases[phase].duration())
     }
 
     /// The equality that is the mean speed.
@@ -196,7 +199,7 @@ impl Cycle<'_> {
 
     /// Which variable's bound `i` is, in words: only durations are bounded.
     pub fn bound_label(&self, i: usize) -> Label {
-        Label { name: "duration of the half step".into(), half_step: i / self.variables.per_phase() + 1, time: 0.0 }
+        Label { limit: Limit::Duration, of: String::new(), half_step: i / self.variables.per_phase() + 1, time: 0.0 }
     }
 
     /// ∂(q_start, q̇_start)/∂Θ of every half step, from the impact's Jacobian.

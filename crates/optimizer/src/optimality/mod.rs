@@ -105,8 +105,8 @@ impl Price {
 /// Multipliers of the objective as prices in a unit.
 fn prices(values: &[f64], unit: f64, label: impl Fn(usize) -> Label) -> Vec<Price> {
     let price = |(i, value): (usize, &f64)| {
-        let Label { name, half_step, time } = label(i);
-        Price { constraint: name, half_step, time, value: unit * value }
+        let label = label(i);
+        Price { constraint: label.name(), half_step: label.half_step, time: label.time, value: unit * value }
     };
     values.iter().enumerate().filter(|(_, value)| **value != 0.0).map(price).collect()
 }
@@ -184,8 +184,8 @@ impl<'a> Linearized<'a> {
         let active = (0..m.inequalities.len()).filter(|i| m.values.inequalities[*i] < ACTIVE);
         let mut names = Vec::new();
         for i in active.filter(|i| !priced.contains(&kind(*i))) {
-            let Label { name, half_step, .. } = cycle.label(i);
-            let name = format!("{name} (half step {half_step})");
+            let label = cycle.label(i);
+            let name = format!("{} (half step {})", label.name(), label.half_step);
             if !names.contains(&name) {
                 names.push(name);
             }

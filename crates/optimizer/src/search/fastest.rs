@@ -72,11 +72,10 @@ fn climb(gait: &dyn Gait, speed: f64, from: &[f64], settings: &Settings) -> Opti
             conflicts = local.conflicts;
         }
     }
-    // What the speed itself and the cycle demand is the question; the answer is what stands against it.
-    let structural = ["mean speed", "closure of β", "closure of σ", "touchdown height"];
-    conflicts.retain(|c| !structural.contains(&c.label.name.as_str()));
+    // The answer is what stands against the question.
+    conflicts.retain(|c| !c.label.limit.is_asked());
     conflicts.sort_by(|a, b| b.weight.total_cmp(&a.weight));
-    let ended_by = conflicts.iter().map(|c| format!("{} (half step {})", c.label.name, c.label.half_step)).collect();
+    let ended_by = conflicts.iter().map(|c| format!("{} (half step {})", c.label.name(), c.label.half_step)).collect();
     Some(MaximumSpeed { speed: good, ended_by, theta })
 }
 

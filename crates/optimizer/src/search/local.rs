@@ -303,7 +303,10 @@ fn conflicts(cycle: &Cycle, solution: &Solution) -> Vec<Conflict> {
     let mut list: Vec<Conflict> = Vec::new();
     let mut add = |label: Label, violation: f64, weight: f64| {
         // Neighbouring instants of one constraint are one participant: its worst.
-        match list.iter_mut().find(|c| c.label.name == label.name && c.label.half_step == label.half_step) {
+        match list
+            .iter_mut()
+            .find(|c| (c.label.limit, &c.label.of, c.label.half_step) == (label.limit, &label.of, label.half_step))
+        {
             Some(known) if known.violation >= violation => known.weight += weight,
             Some(known) => *known = Conflict { label, violation, weight: known.weight + weight },
             None => list.push(Conflict { label, violation, weight }),
