@@ -14,6 +14,7 @@ pub mod four_legs;
 pub mod instant;
 mod lgl;
 pub mod optimality;
+pub mod optimize;
 pub mod origin;
 mod polynomial;
 pub mod readback;
