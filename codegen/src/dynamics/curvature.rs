@@ -120,7 +120,8 @@ pub fn kernel(model: &mut Model, mode: Mode, turn: &Turn) -> Kernel {
     let kernel = Kernel::new(
         mode.kernel("curvature"),
         format!(
-            "Gradient in (q, q̇, q̈) and second derivatives of the sum of all outputs of an instant, each with its weight: {weighted}."
+            "Gradient in (q, q̇, q̈) and second derivatives of the sum of all outputs of an instant, each with its weight: \
+             {weighted}."
         ),
     );
     let kernel = instant.inputs(model, kernel);

@@ -25,9 +25,11 @@ pub fn kernels(model: &mut Model, mode: Mode) -> Vec<Kernel> {
     let values = Kernel::new(
         mode.kernel("heights"),
         mode.say(
-"Heights over the ground of joints and corners, those that can be the lowest, with their Jacobian in q.",
-"Heights over the mass centre of joints and corners, those that can be the lowest, with their Jacobian in q.",
-),
+            "Heights over the ground of joints and corners, those that can be the lowest, with their \
+             Jacobian in q.",
+            "Heights over the mass centre of joints and corners, those that can be the lowest, with their \
+             Jacobian in q.",
+        ),
     )
     .input("q", q.clone())
     .vector("heights", heights.clone(), "m, in the order of the description's `lowest`")

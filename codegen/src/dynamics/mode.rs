@@ -79,19 +79,22 @@ pub fn kernels(model: &mut Model, mode: Mode, turn: &Turn) -> Vec<Kernel> {
         Kernel::new(
             name("platform_velocity"),
             mode.say(
-"ṗ with the stance foot at rest (eq. 3), m/s.",
-"Velocity of the platform's mass centre from the robot's, m/s.",
-),
+                "ṗ with the stance foot at rest (eq. 3), m/s.",
+                "Velocity of the platform's mass centre from the robot's, m/s.",
+            ),
         )
         .input("q", q.clone())
         .input("qd", qd.clone())
         .vector("pd", velocity, "ṗ"),
         momentum_terms(model, &reduced, mode),
-        Kernel::new(name("reduced"), "Reduced model of eq. 6: the rows of Aq q̈ + Hq are the torques of the joints and, where the platform turns, 0.")
-            .input("q", q.clone())
-            .input("qd", qd.clone())
-            .matrix("a", reduced.inertia.clone(), "Aq")
-            .vector("h", reduced.bias.clone(), "Hq"),
+        Kernel::new(
+            name("reduced"),
+            "Reduced model of eq. 6: the rows of Aq q̈ + Hq are the torques of the joints and, where the platform turns, 0.",
+        )
+        .input("q", q.clone())
+        .input("qd", qd.clone())
+        .matrix("a", reduced.inertia.clone(), "Aq")
+        .vector("h", reduced.bias.clone(), "Hq"),
     ];
     kernels.push(forward(model, &reduced, mode, &acceleration));
     kernels.push(inverse(model, &reduced, mode, &acceleration));
@@ -198,9 +201,10 @@ fn forward(model: &mut Model, reduced: &Reduced, mode: Mode, platform: &[Poly]) 
     Kernel::new(
         mode.kernel("forward"),
         mode.say(
-"Forward dynamics in single support: Ẍ and the reaction F from the independent torques Γ (eq. 5 with eq. 4).",
-"Forward dynamics in flight: Ẍ from the independent torques Γ.",
-),
+            "Forward dynamics in single support: Ẍ and the reaction F from the independent torques Γ \
+             (eq. 5 with eq. 4).",
+            "Forward dynamics in flight: Ẍ from the independent torques Γ.",
+        ),
     )
     .input("q", model.q(0))
     .input("qd", model.q(1))
@@ -268,9 +272,10 @@ fn inverse(model: &mut Model, reduced: &Reduced, mode: Mode, platform: &[Poly]) 
     Kernel::new(
         mode.kernel("inverse"),
         mode.say(
-"Inverse dynamics in single support: full Ẍ (β̈ by eq. 10), the torque of every joint and the reaction, from Q̈.",
-"Inverse dynamics in flight: full Ẍ (β̈ by dσ/dt = 0) and the torque of every joint, from Q̈.",
-),
+            "Inverse dynamics in single support: full Ẍ (β̈ by eq. 10), the torque of every joint and the \
+             reaction, from Q̈.",
+            "Inverse dynamics in flight: full Ẍ (β̈ by dσ/dt = 0) and the torque of every joint, from Q̈.",
+        ),
     )
     .input("q", model.q(0))
     .input("qd", model.q(1))
@@ -302,10 +307,11 @@ fn inverse_with_jacobian(model: &mut Model, reduced: &Reduced, mode: Mode) -> Ke
     Kernel::new(
         mode.kernel("inverse_jacobian"),
         mode.say(
-"Inverse dynamics in single support with its Jacobian in (q, q̇, q̈), β̈ taken as an input of its own: \
+            "Inverse dynamics in single support with its Jacobian in (q, q̇, q̈), β̈ taken as an input of its own: \
              rows are the torques of all joints, the reaction, and the balance of eq. 10.",
-"Inverse dynamics in flight with its Jacobian in (q, q̇, q̈), β̈ taken as an input of its own: rows are the torques of all joints and dσ/dt.",
-),
+            "Inverse dynamics in flight with its Jacobian in (q, q̇, q̈), β̈ taken as an input of its own: rows are the \
+             torques of all joints and dσ/dt.",
+        ),
     )
     .input("q", model.q(0))
     .input("qd", model.q(1))

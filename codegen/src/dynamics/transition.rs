@@ -386,8 +386,8 @@ impl TakeOff {
         let gradient = model.jacobian(std::slice::from_ref(&self.lift), &to_acceleration).remove(0);
         Kernel::new(
             transition.kernel(""),
-            "What begins when this foot, at rest so far, leaves the ground: the mass centre's parabola, seen from the foot, and the foot's rise; \
-             with Jacobians.",
+            "What begins when this foot, at rest so far, leaves the ground: the mass centre's parabola, seen from the \
+             foot, and the foot's rise; with Jacobians.",
         )
         .input("q", q)
         .input("qd", qd)

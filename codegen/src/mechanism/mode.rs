@@ -44,8 +44,8 @@ impl Mechanism {
     pub fn with_flight(mut self) -> Result<Mechanism, &'static str> {
         if self.rotation == Rotation::Roll {
             return Err(
-                "the platform rolls: in stance the two real feet carry the pitch and yaw moments that the model leaves \
-                        out, in flight nobody does",
+                "the platform rolls: in stance the two real feet carry the pitch and yaw moments that the model \
+                        leaves out, in flight nobody does",
             );
         }
         if !self.modes.contains(&Mode::Flight) {
