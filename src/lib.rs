@@ -5,6 +5,7 @@
 
 #![forbid(unsafe_code)]
 
+pub use optimize::Unaskable;
 #[cfg(feature = "cli")]
 pub use piaffe_cli as cli;
 #[cfg(feature = "export")]
@@ -15,16 +16,15 @@ pub use piaffe_model as model;
 pub use piaffe_model::{motion, units};
 pub use piaffe_number as number;
 pub use piaffe_optimizer::{
-    altered, audit, constraints, cost, cycle, finite, four_legs, instant, optimality, optimize, origin, readback, result, search,
-    sensitivity, stability, stance, states, trajectory, verdict, walk,
+    altered, audit, constraints, cost, cycle, finite, four_legs, instant, optimality, optimize, origin, readback,
+    result, search, sensitivity, stability, stance, states, trajectory, verdict, walk,
 };
 #[cfg(feature = "report")]
 pub use piaffe_report as report;
-pub use optimize::Unaskable;
-pub use search::local::Task;
 pub use piaffe_sqp as sqp;
 pub use piaffe_verify as verify;
 pub use piaffe_verify::certificate;
+pub use search::local::Task;
 
 /// The programs in the book are run as tests.
 #[cfg(doctest)]
