@@ -83,6 +83,27 @@ fn least_energy_holds_a_knee_still() {
     assert!(optimality(&bird, Criterion::Energy, speed, &moved).unwrap().residual() > 1e-3);
 }
 
+/// The slower a walk, the less its joints move, and the more of them rest for a whole half step: which ones, power tells.
+#[test]
+fn however_slow_a_walk_is_its_least_energy_is_found() {
+    let few = Settings { starts: Some(2), seed: 1 };
+    // N; the best that is known. Per metre it grows like 1/speed.
+    for (name, speed, energy) in [
+        ("curvet", 0.003, 3097.31),
+        ("curvet", 0.01, 930.872),
+        ("curvet", 0.05, 196.626),
+        ("amble", 0.003, 2674.28),
+        ("rabbit/walk", 0.003, 300.214),
+        ("rabbit/walk", 0.05, 18.7592),
+    ] {
+        let result = optimize(named(name), Criterion::Energy, speed, &few);
+        assert!(result.is_optimal(), "{name} at {speed}: {}", result.message);
+        let cost = result.cost.unwrap();
+        assert!(cost < energy * 1.00002, "{name} at {speed}: {cost}");
+    }
+    assert!(optimize(named("trot"), Criterion::Energy, 0.001, &few).is_optimal());
+}
+
 #[test]
 fn where_there_are_no_motions_conflicts_are_named() {
     // Knees that lift no foot by 2 cm.

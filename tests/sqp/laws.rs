@@ -1,6 +1,7 @@
 //! Infeasibility, sampled constraints, undefined regions, determinism, and what the caller can steer.
 
-use super::model::{INF, print};
+use super::jet::Scalar;
+use super::model::{Adapter, INF, Model, print};
 use piaffe::sqp::{Control, Options, Problem, Solution, Status, Undefined, Values, minimize};
 
 type Function = Box<dyn Fn(&[f64]) -> f64>;
@@ -335,4 +336,26 @@ fn a_cusp_is_approached_honestly() {
         solution.status, solution.x, solution.kkt, solution.iterations
     );
     assert!((solution.objective - 1.0).abs() < 0.05, "{:?}", solution.x);
+}
+
+/// A valley ten orders flatter than its wall is steep, beside a ridge to descend from.
+struct Valley;
+
+impl Model<3> for Valley {
+    const NAME: &'static str = "valley";
+    const EQUALITIES: usize = 0;
+    const INEQUALITIES: usize = 0;
+    const START: [f64; 3] = [3.0, 0.1, 0.1];
+    const BEST: f64 = -0.25;
+    fn functions<T: Scalar>(x: &[T; 3], _: &mut [T], _: &mut [T]) -> T {
+        let [along, across, ridge] = *x;
+        along * along * 5e-4 + across * across * 5e6 + ridge * ridge * ridge * ridge * 0.25 - ridge * ridge * 0.5
+    }
+}
+
+#[test]
+fn a_flat_valley_is_descended_in_long_steps() {
+    let solution = minimize(&mut Adapter::<Valley, 3>::new(true), &Valley::START, &Options::default(), &mut print);
+    assert!(solution.status.is_optimal() && (solution.objective - Valley::BEST).abs() < 1e-6, "{solution:?}");
+    assert!(solution.iterations <= 20, "{}", solution.iterations);
 }

@@ -11,6 +11,12 @@ use super::dense::{axpy, cholesky, max_abs, rank_one};
 use super::eigen;
 use super::qp::{Place, Quadratic};
 
+/// Curvature that rounding hides, beside the largest.
+const NOISE: f64 = 1e-12;
+/// Flattest curvature of the stand-in, beside the largest: a valley much flatter than its walls are steep is still descended in long
+/// steps.
+const FLATTEST: f64 = 1e-10;
+
 #[derive(Clone, Debug)]
 pub(super) struct Convexifier {
     l: Vec<f64>,
@@ -43,7 +49,7 @@ impl Convexifier {
         let n = qp.n;
         let size = max_abs(w).max(1e-8);
         // Barely definite is not enough: the steps of the active-set method would be noise.
-        let floor = 1e-8 * size;
+        let floor = NOISE * size;
         if self.definite(w, n, floor) {
             qp.hessian.copy_from_slice(w);
             return;
@@ -99,7 +105,7 @@ impl Convexifier {
         }
         for k in 0..n {
             let lambda = self.lambda[k];
-            let wanted = lambda.abs().max(1e-6 * size);
+            let wanted = lambda.abs().max(FLATTEST * size);
             if lambda < wanted {
                 for (c, row) in self.column.iter_mut().zip(self.vectors.chunks_exact(n)) {
                     *c = row[k];

@@ -36,6 +36,8 @@ pub struct Multipliers {
     pub kinks: Vec<f64>,
     /// What these multipliers leave of the optimality conditions.
     pub kkt: KktResidual,
+    /// The step of the convex program: the way down where the conditions do not hold.
+    pub step: Vec<f64>,
     /// The values of all functions.
     pub values: Values,
 }
@@ -97,7 +99,8 @@ pub fn multipliers<P: Problem>(problem: &mut P, x: &[f64], scale: Vec<f64>) -> R
     kkt::project(&point.z, &lower, &upper, &mut left, &mut nu);
     let kkt = kkt::residual(&view, &point, size, &left, &mu);
     nu.iter_mut().zip(&view.scale).for_each(|(nu, scale)| *nu /= scale);
-    Ok(Multipliers { equalities: lambda, inequalities: mu, bounds: nu, kinks, kkt, values: point.values })
+    let step = step.d.iter().zip(&view.scale).map(|(d, scale)| d * scale).collect();
+    Ok(Multipliers { equalities: lambda, inequalities: mu, bounds: nu, kinks, kkt, step, values: point.values })
 }
 
 #[cfg(test)]
@@ -194,6 +197,10 @@ mod tests {
         for (slope, optimal) in [(0.0, true), (0.9, true), (-1.0, true), (1.2, false), (-3.0, false)] {
             let found = multipliers(&mut Kinked(slope), &[0.0, 0.0], vec![1.0; 2]).unwrap();
             assert_eq!(found.kkt.stationarity < 1e-12, optimal, "{slope}: {found:?}");
+            // Off the kink it goes down.
+            let [x, y] = found.step[..] else { panic!() };
+            let change = slope * x + x.abs() + 0.5 * (x + y).abs();
+            assert!(if optimal { x.abs() + y.abs() < 1e-12 } else { change < -1e-3 }, "{slope}: {found:?}");
             assert!(found.kinks[0].abs() <= 1.0 && found.kinks[1].abs() <= 0.5);
         }
     }

@@ -7,12 +7,14 @@
 //! Θ is kept *on* the kink by equations: a rate is a polynomial, and zero where it is zero at as many instants as it has
 //! coefficients. The joint's power is left out, so all is smooth again. Whether the motion is an optimum off the kink too, is
 //! what its subgradients say: power adds |Γ|·|q̇| at each instant, that is ς·Γ·q̇ with any |ς| ≤ 1 where q̇ = 0. The equations
-//! are given up then, and each instant becomes a [kink](piaffe_sqp::Problem::kinks) with |Γ| as the limit of its multiplier.
+//! are given up then, and each instant becomes a [kink](piaffe_sqp::Problem::kinks) with |Γ| as the limit of its multiplier. Where
+//! it is none, the way down tells which of the joints had better move: those whose rates it changes.
 
 use super::phase::Phase;
 use super::{Cycle, problem};
 use crate::cost::Drive;
 use piaffe_model::motion::Criterion;
+use piaffe_sqp::dot;
 
 /// A joint that moves by less than this, in parts of the fastest joint's rate, is at rest: what equations leave of its rate.
 pub const AT_REST: f64 = 1e-6;
@@ -69,6 +71,19 @@ impl Cycle<'_> {
     /// Gives the equations up: that the held joints rest is left to what their power costs.
     pub fn let_go(&mut self) {
         self.by_equations = false;
+    }
+
+    /// Those of the held joints that a step in Θ from the linearized motion sets in motion.
+    pub fn set_in_motion(&self, step: &[f64]) -> Vec<Still> {
+        let d = self.description();
+        let fastest = |p: &Phase, joint: usize| {
+            let local: Vec<f64> = p.by_theta.chunks(step.len()).map(|row| dot(row, step)).collect();
+            let rate = p.instants.quantities.rate(joint);
+            (0..p.mesh.nodes.len()).map(|node| dot(p.instants.gradient(node, rate), &local).abs()).fold(0.0, f64::max)
+        };
+        let all = self.phases.iter().flat_map(|p| (0..d.joints()).map(|joint| fastest(p, joint)));
+        let limit = AT_REST * all.fold(0.0, f64::max);
+        self.held().filter(|still| fastest(&self.phases[still.phase], still.joint) > limit).collect()
     }
 
     /// The equations that hold joints: half step, joint, and the node at which its rate has to be zero.

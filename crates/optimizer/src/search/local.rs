@@ -43,6 +43,11 @@ pub struct Local {
 }
 
 impl Local {
+    /// Whether there is nothing left to try.
+    fn is_settled(&self) -> bool {
+        matches!(self.status, Status::Optimal | Status::Stopped)
+    }
+
     /// Whether it keeps to all limits, optimum or not.
     pub fn is_motion(&self) -> bool {
         self.kkt.violation <= FEASIBILITY && self.violation <= DENSE
@@ -68,7 +73,7 @@ const SMOOTHING: f64 = 0.028;
 const CAUTION: f64 = 0.05;
 
 /// Joints slower than this, in parts of the fastest joint's rate, may be about to come to rest, where the criterion has kinks.
-const SLOW: f64 = 0.1;
+const SLOW: [f64; 3] = [1e-3, 1e-2, 1e-1];
 
 /// Options of the solver for a problem of this kind.
 pub fn options(cycle: &Cycle) -> Options {
@@ -114,7 +119,7 @@ impl Task<'_> {
     /// Minimizes from the optimum of a neighbouring problem: directly, or as from anywhere if that leads nowhere.
     pub fn follow(&self, start: &[f64], observe: Observer) -> Local {
         let local = self.carry(start, observe);
-        if matches!(local.status, Status::Optimal | Status::Stopped) {
+        if local.is_settled() {
             return local;
         }
         self.descend(start, observe)
@@ -130,7 +135,7 @@ impl Task<'_> {
         let mut cycle = self.cycle();
         let options = options(&cycle);
         let found = between_nodes(&mut cycle, start, |cycle, theta, _| reach(cycle, theta, &options, observe));
-        finish(&mut cycle, found.solution, found.violation)
+        finish(&mut cycle, found.solution, found.violation).local
     }
 
     fn cycle(&self) -> Cycle<'_> {
@@ -155,29 +160,42 @@ impl Task<'_> {
         let mut held = self.slow(start, AT_REST);
         let mut iterations = 0;
         if !held.is_empty() {
-            let local = self.solve(start, &held, CAUTION, observe);
-            if matches!(local.status, Status::Optimal | Status::Stopped) {
+            let local = self.rest(start, held.clone(), observe);
+            if local.is_settled() {
                 return local;
             }
             iterations += local.iterations;
         }
-        let mut free = self.solve(start, &[], first_step_limit, observe);
+        let mut free = self.solve(start, &[], first_step_limit, observe).local;
         iterations += free.iterations;
-        let mut theta = free.theta.clone();
-        while !matches!(free.status, Status::Optimal | Status::Stopped) {
-            let slow = self.slow(&theta, SLOW);
-            if slow.is_empty() || slow == held {
-                break;
+        let theta = free.theta.clone();
+        for share in SLOW {
+            let slow = self.slow(&theta, share);
+            if free.is_settled() || slow.is_empty() || slow == held {
+                continue;
             }
             held = slow;
-            let local = self.solve(&theta, &held, CAUTION, observe);
+            let local = self.rest(&theta, held.clone(), observe);
             iterations += local.iterations;
-            theta.clone_from(&local.theta);
-            if matches!(local.status, Status::Optimal | Status::Stopped) {
+            if local.is_settled() {
                 free = local;
             }
         }
         Local { iterations, ..free }
+    }
+
+    /// The optimum near `start` with these joints held still, or with fewer: those whose power would be less in motion are let
+    /// go.
+    fn rest(&self, start: &[f64], mut held: Vec<Still>, observe: Observer) -> Local {
+        let mut start = start.to_vec();
+        let mut iterations = 0;
+        loop {
+            let Solved { local, loose } = self.solve(&start, &held, CAUTION, observe);
+            iterations += local.iterations;
+            let Some(loose) = loose else { return Local { iterations, ..local } };
+            held.retain(|still| !loose.joints.contains(still));
+            start = loose.start;
+        }
     }
 
     /// Joints that hardly move, by this share of the fastest one's rate.
@@ -191,7 +209,7 @@ impl Task<'_> {
     }
 
     /// The optimum near `start` with these joints held still, on a mesh that resolves it.
-    fn solve(&self, start: &[f64], still: &[Still], first_step_limit: f64, observe: Observer) -> Local {
+    fn solve(&self, start: &[f64], still: &[Still], first_step_limit: f64, observe: Observer) -> Solved {
         let mut cycle = self.cycle();
         cycle.hold(still);
         let mut found = settle(&mut cycle, start, first_step_limit, observe);
@@ -272,21 +290,25 @@ fn between_nodes(
     Settled { solution, violation: f64::INFINITY, settled: true }
 }
 
-fn finish(cycle: &mut Cycle, mut solution: Solution, violation: f64) -> Local {
+fn finish(cycle: &mut Cycle, mut solution: Solution, violation: f64) -> Solved {
+    let mut loose = None;
     if solution.status.is_optimal() && cycle.held().next().is_some() {
         // An optimum among motions that hold these joints; whether among all, their power decides.
         cycle.let_go();
         let scale = cycle.scale();
-        let kkt = multipliers(cycle, &solution.x, scale).map(|m| m.kkt);
-        match kkt {
-            Ok(kkt) if kkt.optimality() <= options(cycle).tolerance => solution.kkt = kkt,
-            _ => solution.status = Status::NoProgress,
+        match multipliers(cycle, &solution.x, scale.clone()) {
+            Ok(found) if found.kkt.optimality() <= options(cycle).tolerance => solution.kkt = found.kkt,
+            Ok(found) => {
+                solution.status = Status::NoProgress;
+                loose = Loose::new(cycle, &solution.x, &found.step, &scale);
+            }
+            Err(_) => solution.status = Status::NoProgress,
         }
     }
     // The motion and its labels are those of the last point simulated: make that the solution.
     let defined = cycle.simulate(&solution.x).is_ok();
     let conflicts = if defined { conflicts(cycle, &solution) } else { Vec::new() };
-    Local {
+    let local = Local {
         status: if defined { solution.status } else { Status::Undefined },
         motion: cycle.motion(),
         costs: cycle.costs(),
@@ -295,6 +317,30 @@ fn finish(cycle: &mut Cycle, mut solution: Solution, violation: f64) -> Local {
         violation,
         iterations: solution.iterations,
         conflicts,
+    };
+    Solved { local, loose }
+}
+
+/// Where a problem with joints held still ended.
+struct Solved {
+    local: Local,
+    loose: Option<Loose>,
+}
+
+/// Held joints that had better move, and a motion in which they begin to.
+struct Loose {
+    joints: Vec<Still>,
+    start: Vec<f64>,
+}
+
+impl Loose {
+    /// Those that a step down from the linearized motion sets in motion. `scale`: natural sizes of the variables.
+    fn new(cycle: &Cycle, theta: &[f64], step: &[f64], scale: &[f64]) -> Option<Loose> {
+        let joints = cycle.set_in_motion(step);
+        let reach = step.iter().zip(scale).map(|(step, scale)| (step / scale).abs()).fold(0.0, f64::max);
+        let share = (CAUTION / reach).min(1.0);
+        let start = theta.iter().zip(step).map(|(x, step)| x + share * step).collect();
+        (!joints.is_empty()).then_some(Loose { joints, start })
     }
 }
 
