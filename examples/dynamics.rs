@@ -13,11 +13,11 @@ fn main() {
 
     // As a gait like any other: how the joints move if nothing drives them, standing on leg 1.
     let d = Trot.description();
-    let n = d.positions() + d.orientations();
     let torques = vec![0.0; d.independent_torques().count()];
-    let mut out = vec![0.0; n + d.positions()];
+    let shape = &d.shapes.forward;
+    let mut out = shape.zeros();
     Trot.forward(0, &q, &qd, &torques, &mut out);
-    println!("Ẍ = {:.3?}\nF = {:.3?}", &out[..n], &out[n..]);
+    println!("Ẍ = {:.3?}\nF = {:.3?}", shape.xdd.of(&out), shape.f.of(&out));
     for o in d.operations.iter().filter(|o| o.kernel.starts_with("inertia")) {
         println!("{} takes {} operations and {} pairs of sine and cosine", o.kernel, o.flops, o.sincos);
     }

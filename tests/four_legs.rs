@@ -213,15 +213,15 @@ fn an_amble_with_limits_at_real_legs_is_one_that_they_can_walk() {
 fn an_impact_asks_for_no_moment_that_the_feet_cannot_give() {
     let amble = gait("amble");
     let d = amble.description();
-    let (n, nc) = (d.orientations(), d.positions());
-    let before = (n + nc + 2) * (1 + 2 * n);
+    let (n, shape) = (d.orientations(), &d.shapes.touchdown);
     let mut rng = fastrand::Rng::with_seed(3);
     for leg in [0, 1].repeat(50) {
         let q: Vec<f64> = (0..n).map(|_| 2.0 * rng.f64() - 1.0).collect();
         let qd: Vec<f64> = (0..n).map(|_| 6.0 * rng.f64() - 3.0).collect();
-        let mut out = vec![f64::NAN; before + 3];
+        let mut out = vec![f64::NAN; shape.len];
         amble.touchdown(leg, &q, &qd, &mut out);
-        let [couple_y, couple_z, pitch] = [out[before], out[before + 1], out[before + 2]];
+        let (couple, pitch) = (shape.couple.of(&out), shape.pitch.value(&out));
+        let [couple_y, couple_z] = [couple[0], couple[1]];
         assert!(pitch.abs() < 1e-12 * d.total_mass(), "{pitch}");
         // The couple lies across the legs' plane.
         assert!((couple_y * q[n - 1].cos() + couple_z * q[n - 1].sin()).abs() < 1e-12, "{couple_y} {couple_z}");

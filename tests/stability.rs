@@ -1,7 +1,7 @@
 //! Orbital stability: the linearized return maps against steps that are really simulated.
 
 use piaffe::gaits::GAITS;
-use piaffe::model::{Description, Gait, HalfSteps};
+use piaffe::model::{Description, Gait, HalfSteps, UP};
 use piaffe::motion::{Criterion, Motion};
 use piaffe::search::multi_start::{Settings, search};
 use piaffe::stability::{PhaseTracking, TimeTracking, stability};
@@ -78,10 +78,9 @@ impl<'a> Tracked<'a> {
 
     fn height(&self, at: &At) -> f64 {
         let [q, _] = self.posture(at.phase, at.time, at.beta);
-        let (nq, nc) = (self.d.orientations(), self.d.positions());
-        let mut placement = vec![0.0; 2 * nc + 2 * nc * nq];
+        let mut placement = self.d.shapes.placement.zeros();
         self.gait.placement(at.phase, &q, &mut placement);
-        placement[nc + 1]
+        self.d.shapes.placement.swing.of(&placement)[UP]
     }
 
     /// Follows the motion until the foot is on the ground, near the gait's time.
@@ -103,12 +102,12 @@ impl<'a> Tracked<'a> {
         let [q, mut qd] = self.posture(at.phase, at.time, at.beta);
         let [f1, f2, ..] = self.terms(at.phase, &q, &qd);
         qd[self.d.unactuated] = (at.sigma - f2) / f1;
-        let (nq, nc) = (self.d.orientations(), self.d.positions());
+        let nc = self.d.positions();
         let mut velocity = vec![0.0; nc];
         self.gait.platform_velocity(at.phase, &q, &qd, &mut velocity);
-        let mut impact = vec![0.0; 2 * nc + nq];
+        let mut impact = self.d.shapes.impact.zeros();
         self.gait.impact(1 - at.phase, &q, &[velocity, qd].concat(), &mut impact);
-        let (q, qd) = (self.renamed(&q), self.renamed(&impact[nc..nc + nq]));
+        let (q, qd) = (self.renamed(&q), self.renamed(&self.d.shapes.impact.xd_plus.of(&impact)[nc..]));
         let phase = (at.phase + 1) % self.durations.len();
         let sigma = self.terms(phase, &q, &qd)[2];
         let time = if self.restarts { 0.0 } else { at.time - self.durations[at.phase] };

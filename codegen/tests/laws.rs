@@ -4,7 +4,7 @@
 mod common;
 
 use common::{Derived, FAMILIES, GAITS, files, in_all_modes, shipped, specification};
-use piaffe_codegen::dynamics::{Input, whole_kernels};
+use piaffe_codegen::dynamics::{Block, Input, Kernel, whole_kernels};
 use piaffe_codegen::emit::{MATH_FILE, gait_source};
 use piaffe_codegen::mechanism::{Lever, Mechanism, Mode, Whole};
 use piaffe_codegen::program::Program;
@@ -292,6 +292,34 @@ fn what_a_gaits_module_needs_cannot_be_a_gaits_name() {
     let mut known: Vec<&str> = ITEMS.to_vec();
     known.sort_unstable();
     assert_eq!(needed.0.iter().collect::<Vec<_>>(), known, "write these into spec/name.rs");
+}
+
+/// Whoever reads a kernel's numbers asks where they stand without asking for which leg.
+#[test]
+fn twins_have_the_same_blocks() {
+    for gait in GAITS {
+        let d = Derived::new(&shipped(gait));
+        for kernel in d.kernels.iter().filter(|k| k.outputs.len() > 1) {
+            let Some(base) = kernel.name.strip_suffix('1') else { continue };
+            let blocks = |k: &Kernel| {
+                let outputs: Vec<Block> = k.outputs.iter().map(|o| Block { name: o.name, shape: o.shape }).collect();
+                let inputs: Vec<Vec<Block>> = k.inputs.iter().map(|i| i.blocks.clone()).collect();
+                (outputs, inputs)
+            };
+            assert_eq!(blocks(kernel), blocks(d.kernel(&format!("{base}2"))), "{gait}: {base}");
+        }
+    }
+}
+
+/// Blocks of an input are all of it.
+#[test]
+fn every_weight_has_a_name() {
+    for gait in GAITS {
+        for input in Derived::new(&shipped(gait)).kernels.iter().flat_map(|k| &k.inputs) {
+            let named = Block::total(&input.blocks);
+            assert!(input.blocks.is_empty() || named == input.symbols.len(), "{gait}: {}", input.name);
+        }
+    }
 }
 
 /// What no specification gives, a name that is none and numbers that are none, ends as words and not as code.

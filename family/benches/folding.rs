@@ -18,10 +18,11 @@ fn folding(c: &mut Criterion) {
         let Ok(member) = family.with(&[]) else { continue };
         let parametric: &dyn Gait = &*member;
         let d = folded.description();
-        let (nq, np, joints) = (d.orientations(), d.positions(), d.joints());
+        let (nq, np) = (d.orientations(), d.positions());
         let vector = |n: usize, first: f64| -> Vec<f64> { (0..n).map(|k| first - 0.2 * k as f64).collect() };
         let (q, qd, qdd) = (vector(nq, 0.3), vector(nq, 1.0), vector(nq, 2.0));
-        let (n, phi, others) = (vector(joints + 1, 1.0), vector(np, 0.5), vector(6, 0.7));
+        let weights = &d.shapes.curvature;
+        let (n, phi, others) = (vector(weights.n.len, 1.0), vector(np, 0.5), vector(weights.others.len, 0.7));
         let mut out = vec![0.0; 4096];
         let mut group = c.benchmark_group(format!("folding/{}", d.gait));
         for (how, gait) in [("folded", folded), ("parametric", parametric)] {

@@ -1,5 +1,6 @@
 //! Froude copies: a gait of a robot of the same shape and build, of another size and weight.
 
+use piaffe::model::shape::{Block, LateGradient, MomentumTerms};
 use piaffe::model::{Body, Description, Gait, Spot};
 
 /// By what factor each dimension grows; gravity stays.
@@ -113,36 +114,24 @@ impl<'a> Copy<'a> {
 
     /// Gradient and second derivatives of a weighted sum.
     fn second(&self, out: &mut [f64]) {
-        let (nq, t) = (self.description.orientations(), self.by.time);
-        let (gradient, blocks) = out.split_at_mut(3 * nq);
+        let (nq, t, shape) = (self.description.orientations(), self.by.time, &self.description.shapes.curvature);
+        let gradient = shape.gradient.of_mut(out);
         scale(&mut gradient[nq..2 * nq], t);
         scale(&mut gradient[2 * nq..], t * t);
-        for (block, factor) in blocks.chunks_mut(nq * nq).zip([1.0, t, t * t, t * t]) {
-            scale(block, factor);
+        for (block, factor) in [(shape.q_qd, t), (shape.q_qdd, t * t), (shape.qd_qd, t * t)] {
+            scale(block.of_mut(out), factor);
         }
     }
 
-    /// Units of what a touchdown gives after q̇⁺.
-    fn of_impact(&self) -> Vec<f64> {
-        let mut units = vec![self.by.impulse(); self.description.positions()];
-        units.extend([self.by.speed(); 2]);
-        units
-    }
-
-    fn of_shared(&self) -> Vec<f64> {
-        let leg = &self.description.legs[0];
-        let mut units = vec![self.by.torque(); 2];
-        units.resize(2 + 3 * (leg.end_joint - leg.first_joint), self.by.length);
-        units
+    /// Scales values and their gradients in q, q̇ and so on.
+    fn with_gradients(&self, out: &mut [f64], unit: f64, [values, rows]: [Block; 2], orders: usize) {
+        scale(values.of_mut(out), unit);
+        self.jacobian(rows.of_mut(out), &vec![unit; values.len()], orders);
     }
 }
 
 fn scale(numbers: &mut [f64], factor: f64) {
     numbers.iter_mut().for_each(|x| *x *= factor);
-}
-
-fn times(numbers: &[f64], units: impl IntoIterator<Item = f64>) -> Vec<f64> {
-    numbers.iter().zip(units).map(|(x, unit)| x * unit).collect()
 }
 
 /// Kernels that nobody asks for here.
@@ -187,38 +176,37 @@ impl Gait for Copy<'_> {
     fn momentum_terms(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]) {
         self.gait.momentum_terms(leg, q, &self.rates(qd), out);
         let by = &self.by;
-        let units = [by.inertia(), by.turn(), by.turn(), by.length, by.torque()];
-        out.iter_mut().zip(units).for_each(|(x, unit)| *x *= unit);
+        let MomentumTerms { f1, f2, sigma, c, sigmadot, .. } = self.description.shapes.momentum_terms;
+        let (inertia, turn) = (by.inertia(), by.turn());
+        for (block, unit) in [(f1, inertia), (f2, turn), (sigma, turn), (c, by.length), (sigmadot, by.torque())] {
+            scale(block.of_mut(out), unit);
+        }
     }
 
     fn inverse(&self, leg: usize, q: &[f64], qd: &[f64], actuated_dd: &[f64], out: &mut [f64]) {
         self.gait.inverse(leg, q, &self.rates(qd), &self.accelerations(actuated_dd), out);
-        let (nc, nq) = (self.description.positions(), self.description.orientations());
+        let (shape, nc) = (&self.description.shapes.inverse, self.description.positions());
         let (by, square) = (&self.by, self.by.time * self.by.time);
-        let (xdd, forces) = out.split_at_mut(nc + nq);
-        scale(&mut xdd[..nc], by.length / square);
-        scale(&mut xdd[nc..], 1.0 / square);
-        let (torques, force) = forces.split_at_mut(self.description.joints());
-        scale(torques, by.torque());
-        scale(force, by.force());
+        let (p, q) = shape.xdd.of_mut(out).split_at_mut(nc);
+        scale(p, by.length / square);
+        scale(q, 1.0 / square);
+        scale(shape.gamma.of_mut(out), by.torque());
+        scale(shape.f.of_mut(out), by.force());
     }
 
     fn momentum(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]) {
         self.gait.momentum(leg, q, &self.rates(qd), out);
-        out[0] *= self.by.turn();
-        self.jacobian(&mut out[1..], &[self.by.turn()], 2);
+        let shape = &self.description.shapes.momentum;
+        self.with_gradients(out, self.by.turn(), [shape.sigma, shape.sigma_w], 2);
     }
 
     fn inverse_jacobian(&self, leg: usize, q: &[f64], qd: &[f64], actuated_dd: &[f64], out: &mut [f64]) {
         self.gait.inverse_jacobian(leg, q, &self.rates(qd), &self.accelerations(actuated_dd), out);
-        let (nc, nj) = (self.description.positions(), self.description.joints());
-        let mut units = vec![self.by.torque(); nj];
-        units.extend(vec![self.by.force(); nc]);
-        out[0] /= self.by.time * self.by.time;
-        let values = times(&out[1..1 + nj + nc], units.clone());
-        out[1..1 + nj + nc].copy_from_slice(&values);
-        units.push(self.by.torque());
-        self.jacobian(&mut out[1 + nj + nc..], &units, 3);
+        let (by, shape) = (&self.by, &self.description.shapes.inverse_jacobian);
+        scale(shape.beta_dd.of_mut(out), 1.0 / (by.time * by.time));
+        self.with_gradients(out, by.torque(), [shape.gamma, shape.gamma_w], 3);
+        self.with_gradients(out, by.force(), [shape.f, shape.f_w], 3);
+        self.jacobian(shape.balance_w.of_mut(out), &[by.torque()], 3);
     }
 
     fn placement(&self, leg: usize, q: &[f64], out: &mut [f64]) {
@@ -238,9 +226,8 @@ impl Gait for Copy<'_> {
 
     fn swing_velocity(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]) {
         self.gait.swing_velocity(leg, q, &self.rates(qd), out);
-        let nc = self.description.positions();
-        scale(&mut out[..nc], self.by.speed());
-        self.jacobian(&mut out[nc..], &vec![self.by.speed(); nc], 2);
+        let shape = &self.description.shapes.swing_velocity;
+        self.with_gradients(out, self.by.speed(), [shape.v, shape.v_w], 2);
     }
 
     fn early(&self, leg: usize, actuated: &[f64], actuated_d: &[f64], out: &mut [f64]) {
@@ -255,28 +242,22 @@ impl Gait for Copy<'_> {
 
     fn late_gradient(&self, leg: usize, early: &[f64], beta: f64, out: &mut [f64]) {
         self.gait.late_gradient(leg, early, beta, out);
-        let units = [self.by.inertia(), self.by.turn(), self.by.inertia(), self.by.torque()];
-        for (part, unit) in out.chunks_mut(self.description.prescribed()).zip(units) {
-            scale(part, unit);
+        let LateGradient { f1_q, f2_q, f2_qd, moment_q, .. } = self.description.shapes.late_gradient;
+        let inertia = self.by.inertia();
+        for (block, unit) in [(f1_q, inertia), (f2_q, self.by.turn()), (f2_qd, inertia), (moment_q, self.by.torque())] {
+            scale(block.of_mut(out), unit);
         }
     }
 
     fn touchdown(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]) {
         self.gait.touchdown(leg, q, &self.rates(qd), out);
-        let nq = self.description.orientations();
-        let mut units = vec![self.by.rate(); nq];
-        units.extend(self.of_impact());
-        let part = |out: &mut [f64], at: usize, units: &[f64]| {
-            let values = times(&out[at..at + units.len()], units.iter().copied());
-            out[at..at + units.len()].copy_from_slice(&values);
-            let first = at + units.len();
-            self.jacobian(&mut out[first..first + units.len() * 2 * nq], units, 2);
-            first + units.len() * 2 * nq
-        };
-        let rest = part(out, 0, &units);
-        if out.len() > rest {
-            part(out, rest, &[self.by.turn(); 3]);
-        }
+        let (by, s) = (&self.by, &self.description.shapes.touchdown);
+        self.with_gradients(out, by.rate(), [s.qd_plus, s.qd_plus_w], 2);
+        self.with_gradients(out, by.impulse(), [s.impulse, s.impulse_w], 2);
+        self.with_gradients(out, by.speed(), [s.leaving, s.leaving_w], 2);
+        self.with_gradients(out, by.speed(), [s.landing, s.landing_w], 2);
+        self.with_gradients(out, by.turn(), [s.couple, s.couple_w], 2);
+        self.with_gradients(out, by.turn(), [s.pitch, s.pitch_w], 2);
     }
 
     fn curvature(
@@ -293,29 +274,50 @@ impl Gait for Copy<'_> {
         let by = &self.by;
         let n: Vec<f64> = n.iter().map(|x| x * by.torque()).collect();
         let phi: Vec<f64> = phi.iter().map(|x| x * by.force()).collect();
-        let others = times(others, [by.turn(), by.torque(), by.length, by.length, by.speed(), by.length]);
+        let (to, mut others) = (&self.description.shapes.curvature.others, others.to_vec());
+        for (block, unit) in [
+            (to.sigma, by.turn()),
+            (to.sigmad, by.torque()),
+            (to.swing_height, by.length),
+            (to.platform_x, by.length),
+            (to.swing_velocity, by.speed()),
+            (to.platform_height, by.length),
+        ] {
+            scale(block.of_mut(&mut others), unit);
+        }
         self.gait.curvature(leg, q, &self.rates(qd), &self.accelerations(qdd), &n, &phi, &others, out);
         self.second(out);
     }
 
     fn touchdown_curvature(&self, leg: usize, q: &[f64], qd: &[f64], xi: &[f64], outputs: &[f64], out: &mut [f64]) {
         let xi: Vec<f64> = xi.iter().map(|x| x * self.by.rate()).collect();
-        let outputs = times(outputs, self.of_impact().into_iter().chain([self.by.turn(); 3]));
+        let (by, shape, mut outputs) = (&self.by, &self.description.shapes.touchdown_curvature, outputs.to_vec());
+        let to = &shape.outputs;
+        for (block, unit) in [
+            (to.impulse, by.impulse()),
+            (to.leaving, by.speed()),
+            (to.landing, by.speed()),
+            (to.couple, by.turn()),
+            (to.pitch, by.turn()),
+        ] {
+            scale(block.of_mut(&mut outputs), unit);
+        }
         self.gait.touchdown_curvature(leg, q, &self.rates(qd), &xi, &outputs, out);
-        let nq = self.description.orientations();
-        scale(&mut out[nq * nq..], self.by.time);
+        scale(shape.q_qd.of_mut(out), by.time);
+        scale(shape.q_plus.of_mut(out), by.time);
     }
 
     fn sharing(&self, leg: usize, q: &[f64], qd: &[f64], qdd: &[f64], out: &mut [f64]) {
         self.gait.sharing(leg, q, &self.rates(qd), &self.accelerations(qdd), out);
-        let units = self.of_shared();
-        let values = times(&out[..units.len()], units.iter().copied());
-        out[..units.len()].copy_from_slice(&values);
-        self.jacobian(&mut out[units.len()..], &units, 3);
+        let (by, shape) = (&self.by, &self.description.shapes.sharing);
+        self.with_gradients(out, by.torque(), [shape.moment, shape.moment_w], 3);
+        self.with_gradients(out, by.length, [shape.levers, shape.levers_w], 3);
     }
 
     fn sharing_curvature(&self, leg: usize, q: &[f64], qd: &[f64], qdd: &[f64], weights: &[f64], out: &mut [f64]) {
-        let weights = times(weights, self.of_shared());
+        let (to, mut weights) = (&self.description.shapes.sharing_curvature.weights, weights.to_vec());
+        scale(to.moment.of_mut(&mut weights), self.by.torque());
+        scale(to.levers.of_mut(&mut weights), self.by.length);
         self.gait.sharing_curvature(leg, q, &self.rates(qd), &self.accelerations(qdd), &weights, out);
         self.second(out);
     }

@@ -11,10 +11,9 @@ use piaffe::verify::{instants::State, numbers::Numbers, support::Support, verify
 /// The rows of a gait, and the heights of all points, in a posture.
 fn heights(gait: &dyn Gait, leg: usize, q: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let d = gait.description();
-    let rows = d.lowest.len();
-    let mut kernel = vec![f64::NAN; rows * (1 + q.len())];
+    let mut kernel = vec![f64::NAN; d.shapes.heights.len];
     gait.heights(leg, q, &mut kernel);
-    kernel.truncate(rows);
+    let kernel = d.shapes.heights.heights.of(&kernel).to_vec();
     let mut support = Support::new(d, leg);
     let mut state = State { q: q.to_vec(), ..State::new(d) };
     support.accelerate(&state.q, &state.qd, &mut state.qdd).expect("f1 does not vanish");

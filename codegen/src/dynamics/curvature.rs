@@ -5,7 +5,7 @@
 //! scalar holds all rows, and it is small. n has a weight for the torque of every joint and one for
 //! the balance of eq. 10: the platform's row where it turns, else a turn of the whole robot.
 
-use super::kernel::Kernel;
+use super::kernel::{Block, Kernel};
 use super::mode::swinging;
 use super::model::{Model, Origin, scaled};
 use super::turn::Turn;
@@ -69,6 +69,8 @@ pub struct Instant {
     /// Weights of σ and σ̇, of the heights of the feet in the air, of the platform's x, of the vertical velocities of these feet,
     /// and of the platform's height. In flight there is no σ̇.
     pub others: Vec<Var>,
+    /// What these are.
+    pub blocks: Vec<Block>,
     pub sum: Poly,
 }
 
@@ -78,8 +80,15 @@ impl Instant {
         let swing = swinging(model, mode);
         let n = symbols(model, "n", model.mechanism.joints.len() + 1);
         let phi = symbols(model, "phi", if stands { model.mechanism.positions() } else { 0 });
-        let count = 3 + usize::from(stands) + 2 * swing.len();
-        let others = symbols(model, "w", count);
+        let mut blocks = vec![Block::scalar("sigma")];
+        blocks.extend(Some(Block::scalar("sigmad")).filter(|_| stands));
+        blocks.extend([
+            Block::vector("swing_height", swing.len()),
+            Block::scalar("platform_x"),
+            Block::vector("swing_velocity", swing.len()),
+            Block::scalar("platform_height"),
+        ]);
+        let others = symbols(model, "w", Block::total(&blocks));
         let mut sum = virtual_power(model, mode.into(), &n, &phi);
         let rates: Vec<Vec3> = swing.iter().map(|foot| model.rate(foot)).collect();
         let platform = model.place(mode.into()).map(|x| -&x);
@@ -92,15 +101,19 @@ impl Instant {
         for (weight, term) in others.iter().zip(terms) {
             sum += &(&Poly::from(*weight) * term);
         }
-        Instant { n, phi, others, sum }
+        Instant { n, phi, others, blocks, sum }
     }
 
     /// The kernel with the state and the weights as its inputs.
     pub fn inputs(&self, model: &Model, kernel: Kernel) -> Kernel {
         let kernel = kernel.input("q", model.q(0)).input("qd", model.q(1)).input("qdd", model.q(2));
-        let kernel = kernel.input("n", self.n.clone());
+        let kernel = kernel.blocks(
+            "n",
+            self.n.clone(),
+            vec![Block::vector("torque", self.n.len() - 1), Block::scalar("balance")],
+        );
         let kernel = if self.phi.is_empty() { kernel } else { kernel.input("phi", self.phi.clone()) };
-        kernel.input("others", self.others.clone())
+        kernel.blocks("others", self.others.clone(), self.blocks.clone())
     }
 }
 

@@ -33,7 +33,7 @@ pub fn kernels(model: &mut Model, mode: Mode) -> Vec<Kernel> {
     )
     .input("q", q.clone())
     .vector("heights", heights.clone(), "m, in the order of the description's `lowest`")
-    .matrix("jacobian", model.jacobian(&heights, &q), "∂heights/∂q");
+    .matrix("heights_q", model.jacobian(&heights, &q), "∂heights/∂q");
     let curvature = Kernel::new(
         mode.kernel("heights_curvature"),
         "Gradient in q and second derivatives of the sum of these heights, each with its weight.",

@@ -20,6 +20,15 @@ pub struct Input {
     pub symbols: Vec<Var>,
     /// A single number rather than an array.
     pub scalar: bool,
+    /// What its numbers are, one after another, if they are of several kinds.
+    pub blocks: Vec<Block>,
+}
+
+/// Numbers that belong together, in an input or among the outputs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Block {
+    pub name: &'static str,
+    pub shape: Shape,
 }
 
 #[derive(Clone, Debug)]
@@ -39,13 +48,18 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// The indices of each of its numbers, in order.
-    pub fn places(self) -> impl Iterator<Item = Vec<usize>> {
-        let (rows, columns) = match self {
+    /// How many rows and columns its numbers have.
+    pub fn size(self) -> (usize, usize) {
+        match self {
             Shape::Scalar => (1, 1),
             Shape::Vector(n) => (n, 1),
             Shape::Matrix(rows, columns) => (rows, columns),
-        };
+        }
+    }
+
+    /// The indices of each of its numbers, in order.
+    pub fn places(self) -> impl Iterator<Item = Vec<usize>> {
+        let (rows, columns) = self.size();
         (0..rows * columns).map(move |k| match self {
             Shape::Scalar => Vec::new(),
             Shape::Vector(_) => vec![k],
@@ -54,7 +68,36 @@ impl Shape {
     }
 }
 
+impl Block {
+    pub fn scalar(name: &'static str) -> Block {
+        Block { name, shape: Shape::Scalar }
+    }
+
+    pub fn vector(name: &'static str, length: usize) -> Block {
+        Block { name, shape: Shape::Vector(length) }
+    }
+
+    /// How many numbers they are.
+    pub fn count(&self) -> usize {
+        let (rows, columns) = self.shape.size();
+        rows * columns
+    }
+
+    /// How many numbers they are in all.
+    pub fn total(blocks: &[Block]) -> usize {
+        blocks.iter().map(Block::count).sum()
+    }
+}
+
 impl Input {
+    pub fn new(name: &'static str, symbols: Vec<Var>) -> Input {
+        Input { name, symbols, scalar: false, blocks: Vec::new() }
+    }
+
+    pub fn of_blocks(name: &'static str, symbols: Vec<Var>, blocks: Vec<Block>) -> Input {
+        Input { blocks, ..Input::new(name, symbols) }
+    }
+
     pub fn shape(&self) -> Shape {
         if self.scalar { Shape::Scalar } else { Shape::Vector(self.symbols.len()) }
     }
@@ -75,12 +118,23 @@ impl Kernel {
     }
 
     pub fn input(mut self, name: &'static str, symbols: Vec<Var>) -> Kernel {
-        self.inputs.push(Input { name, symbols, scalar: false });
+        self.inputs.push(Input::new(name, symbols));
+        self
+    }
+
+    /// An input of several kinds of numbers, such as a weight for each of several results.
+    pub fn blocks(mut self, name: &'static str, symbols: Vec<Var>, blocks: Vec<Block>) -> Kernel {
+        self.inputs.push(Input::of_blocks(name, symbols, blocks));
+        self
+    }
+
+    pub fn inputs(mut self, inputs: Vec<Input>) -> Kernel {
+        self.inputs.extend(inputs);
         self
     }
 
     pub fn scalar_input(mut self, name: &'static str, symbol: Var) -> Kernel {
-        self.inputs.push(Input { name, symbols: vec![symbol], scalar: true });
+        self.inputs.push(Input { scalar: true, ..Input::new(name, vec![symbol]) });
         self
     }
 

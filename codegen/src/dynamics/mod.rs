@@ -24,7 +24,7 @@ mod whole;
 
 pub use closed_forms::{Equation, Section, closed_forms};
 pub use heights::lowest;
-pub use kernel::{Input, Kernel, Output, Shape};
+pub use kernel::{Block, Input, Kernel, Output, Shape};
 pub use lumps::{LUMPS, PARAMETERS};
 pub use model::Model;
 pub use quantities::{BodyQuantities, Quantities};
@@ -93,7 +93,7 @@ pub fn family_kernels(family: &Family) -> (Model, FamilyKernels) {
     let weighted: Vec<_> = weighted.into_iter().map(|w| w.lumped(&mut model, &mut lumps)).collect();
     let mut sensitivity: Vec<Kernel> = weighted.into_iter().map(|w| w.gradient(&mut model, &lumps)).collect();
     for kernel in gait.iter_mut().chain(&mut sensitivity) {
-        kernel.inputs.insert(0, Input { name: LUMPS, symbols: lumps.symbols.clone(), scalar: false });
+        kernel.inputs.insert(0, Input::new(LUMPS, lumps.symbols.clone()));
     }
     let parameters = lumps.kernels(&model);
     (model, FamilyKernels { gait, sensitivity, parameters })

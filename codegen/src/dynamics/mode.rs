@@ -296,7 +296,7 @@ fn inverse_with_jacobian(model: &mut Model, reduced: &Reduced, mode: Mode) -> Ke
     let outputs: Vec<Poly> =
         reduced.forces[..joints].iter().chain(&reduced.reaction).chain([&reduced.turn.balance]).cloned().collect();
     let by: Vec<Var> = [model.q(0), model.q(1), model.q(2)].concat();
-    let jacobian: Vec<Vec<Poly>> = model
+    let mut jacobian: Vec<Vec<Poly>> = model
         .jacobian(&outputs, &by)
         .iter()
         .map(|row| row.iter().map(|p| model.ring.substitute(p, &map)).collect())
@@ -304,13 +304,16 @@ fn inverse_with_jacobian(model: &mut Model, reduced: &Reduced, mode: Mode) -> Ke
     let mut values: Vec<Poly> = outputs.iter().map(|p| model.ring.substitute(p, &map)).collect();
     values.pop();
     let reaction = values.split_off(joints);
-    Kernel::new(
+    let balance_rows = jacobian.split_off(outputs.len() - 1);
+    let reaction_rows = jacobian.split_off(joints);
+    let stands = !reaction.is_empty();
+    let kernel = Kernel::new(
         mode.kernel("inverse_jacobian"),
         mode.say(
-            "Inverse dynamics in single support with its Jacobian in (q, q̇, q̈), β̈ taken as an input of its own: \
-             rows are the torques of all joints, the reaction, and the balance of eq. 10.",
-            "Inverse dynamics in flight with its Jacobian in (q, q̇, q̈), β̈ taken as an input of its own: rows are the \
-             torques of all joints and dσ/dt.",
+            "Inverse dynamics in single support with its Jacobian in w = (q, q̇, q̈), β̈ taken as an input of its own, and \
+             that of the balance of eq. 10.",
+            "Inverse dynamics in flight with its Jacobian in w = (q, q̇, q̈), β̈ taken as an input of its own, and that of \
+             dσ/dt.",
         ),
     )
     .input("q", model.q(0))
@@ -319,7 +322,9 @@ fn inverse_with_jacobian(model: &mut Model, reduced: &Reduced, mode: Mode) -> Ke
     .scalar("beta_dd", beta, "β̈, rad/s² (eq. 10)")
     .vector("gamma", values, "torque of every joint, N·m")
     .with_reaction(reaction)
-    .matrix("jacobian", jacobian, mode.say("∂(Γ, F, balance)/∂(q, q̇, q̈)", "∂(Γ, dσ/dt)/∂(q, q̇, q̈)"))
+    .matrix("gamma_w", jacobian, "∂Γ/∂w");
+    let kernel = if stands { kernel.matrix("f_w", reaction_rows, "∂F/∂w") } else { kernel };
+    kernel.matrix("balance_w", balance_rows, mode.say("∂balance/∂w", "∂(dσ/dt)/∂w"))
 }
 
 impl Kernel {

@@ -4,7 +4,7 @@
 //! that one gradient serves every multiplier, and unit weights give the partial derivatives themselves.
 
 use super::curvature::Instant;
-use super::kernel::Kernel;
+use super::kernel::{Block, Kernel};
 use super::lumps::Lumps;
 use super::model::Model;
 use super::transition::Results;
@@ -76,7 +76,7 @@ fn terms(model: &mut Model, mode: Mode, turn: &Turn) -> Weighted {
     )
     .input("q", model.q(0))
     .input("qd", model.q(1))
-    .input("weights", weights);
+    .blocks("weights", weights, ["f1", "f2", "c"].map(Block::scalar).to_vec());
     Weighted { kernel, sum, held: BTreeMap::new() }
 }
 
@@ -87,6 +87,6 @@ pub fn of_transition(model: &mut Model, transition: Transition) -> Weighted {
         transition.kernel("_sensitivity"),
         "Gradient in the lumped parameters of what a transition does, with the weights of its curvature's kernel.",
     );
-    let kernel = results.inputs.into_iter().fold(kernel, |kernel, (name, symbols)| kernel.input(name, symbols));
+    let kernel = kernel.inputs(results.inputs);
     Weighted { kernel, sum: results.sum, held: results.solution }
 }

@@ -6,7 +6,7 @@
 //! about the transverse axis decides how the legs of a side share the reaction.
 
 use super::curvature::second_derivatives;
-use super::kernel::Kernel;
+use super::kernel::{Block, Kernel, Shape};
 use super::model::{Model, Origin, scaled};
 use crate::expr::{Poly, Var, Vec3, add, cross, dot, rotate, zero};
 use std::collections::BTreeMap;
@@ -24,19 +24,24 @@ pub fn kernels(model: &mut Model, leg: usize) -> Vec<Kernel> {
         sum += &(&Poly::from(*weight) * output);
     }
     let state = |kernel: Kernel| kernel.input("q", q.clone()).input("qd", qd.clone()).input("qdd", qdd.clone());
+    let mut jacobian = model.jacobian(&outputs, &by);
+    let lever_rows = jacobian.split_off(moment.len());
+    let blocks =
+        vec![Block::vector("moment", moment.len()), Block { name: "levers", shape: Shape::Matrix(levers.len(), 3) }];
     let values = state(Kernel::new(
         format!("sharing{}", leg + 1),
-        "What decides how the real legs of the stance leg share the load, with its Jacobian in (q, q̇, q̈): the moment that \
+        "What decides how the real legs of the stance leg share the load, with its Jacobian in w = (q, q̇, q̈): the moment that \
          their forces must have about the virtual foot, and the foot's place as the leg's joints move it.",
     ))
     .vector("moment", moment.to_vec(), "about the vertical and the transverse axis, N·m")
     .matrix("levers", levers, "∂(foot from the platform)/∂(joint), a row per joint of the leg, m")
-    .matrix("jacobian", model.jacobian(&outputs, &by), "∂(moment, levers)/∂(q, q̇, q̈)");
+    .matrix("moment_w", jacobian, "∂moment/∂w")
+    .matrix("levers_w", lever_rows, "∂levers/∂w, a row for each of them");
     let curvature = state(Kernel::new(
         format!("sharing_curvature{}", leg + 1),
         "Gradient in (q, q̇, q̈) and second derivatives of the sum of what the sharing's kernel gives, each with its weight.",
     ))
-    .input("weights", weights);
+    .blocks("weights", weights, blocks);
     vec![values, second_derivatives(model, curvature, &sum)]
 }
 

@@ -5,7 +5,7 @@
 //! rest. In those, the generalized momenta before and after are equal: `Aq⁽ʲ⁾ q̇⁺ = P⁽ʲ⁾(Ẋ⁻)`.
 
 use super::curvature::{second_derivatives, symbols};
-use super::kernel::Kernel;
+use super::kernel::{Block, Input, Kernel};
 use super::model::{Model, Origin, scaled};
 use super::sharing;
 use super::solve::Factors;
@@ -104,7 +104,7 @@ pub fn curvature(model: &mut Model, transition: Transition) -> Kernel {
             .input("q", model.q(0))
             .input("qd", model.q(1))
             .input("qdd", model.q(2))
-            .input("weights", weights);
+            .inputs(vec![weights]);
             second_derivatives(model, kernel, &sum)
         }
     }
@@ -146,6 +146,8 @@ struct Impact {
     /// Impulse, vertical velocity after of the foot that leaves, if one does, of the landing foot before; where the platform rolls
     /// also how real feet share (see `sharing::landing`).
     outputs: Vec<Poly>,
+    /// What these are.
+    blocks: Vec<Block>,
 }
 
 /// Rates under the name of their input.
@@ -174,10 +176,12 @@ impl Impact {
         let residual = before.iter().zip(&after).map(|(b, a)| b - a).collect();
         let momentum_before = linear_momentum(model, &platform);
         let mut outputs = impulse(model, leg, &momentum_before, &rename);
+        let mut blocks = vec![Block::vector("impulse", outputs.len())];
         if let Some(stance) = transition.leaves() {
             let leaving = subtract(&model.foot(stance), &model.foot(leg));
             let leaving_rate = model.rate(&leaving);
             outputs.push(model.ring.substitute(&leaving_rate[1], &rename));
+            blocks.push(Block::scalar("leaving"));
         }
         let place = model.foot(leg);
         let landing = match transition.leaves() {
@@ -185,17 +189,19 @@ impl Impact {
             None => &platform[1] + &model.rate(&place)[1],
         };
         outputs.push(landing);
+        blocks.push(Block::scalar("landing"));
         if model.mechanism.rotation == Rotation::Roll {
             outputs.extend(sharing::landing(model, leg, &platform, &rename));
+            blocks.extend([Block::vector("couple", 2), Block::scalar("pitch")]);
         }
-        Impact { velocities, inertia, before, plus, residual, outputs }
+        Impact { velocities, inertia, before, plus, residual, outputs, blocks }
     }
 }
 
 /// The impact at the end of a mode, with its Jacobian in q and the velocities before.
 fn landing(model: &mut Model, transition: Transition, leg: usize) -> Kernel {
     let q = model.q(0);
-    let Impact { velocities, inertia, before, plus, residual, outputs } = Impact::new(model, transition, leg);
+    let Impact { velocities, inertia, before, plus, residual, outputs, .. } = Impact::new(model, transition, leg);
     let by: Vec<Var> = q.iter().chain(&velocities.symbols).copied().collect();
     let factors = Factors::new(&mut model.ring, &inertia);
     let solution = factors.solve(&mut model.ring, &before);
@@ -228,24 +234,18 @@ fn landing(model: &mut Model, transition: Transition, leg: usize) -> Kernel {
     let mut values: Vec<Poly> = outputs.iter().map(|p| model.ring.substitute(p, &insert)).collect();
     let leaves = transition.leaves().is_some();
     let mut couple = values.split_off(model.mechanism.positions() + 1 + usize::from(leaves));
-    let couple_rows = jacobian.split_off(jacobian.len() - couple.len());
     let landing_velocity = values.pop().unwrap_or_default();
     let leaving_velocity = if leaves { values.pop() } else { None };
-    let (doc, rows) = if leaves {
-        (
-            "Impact on this foot at the end of single support on the other (eq. 12), with its Jacobian in (q, q̇⁻): \
-         rows are q̇⁺, the impulse, the leaving foot's vertical velocity after, the landing foot's before.",
-            "∂(q̇⁺, impulse, leaving, landing)/∂(q, q̇⁻)",
-        )
+    let mut rows = jacobian.into_iter();
+    let mut rows = |count: usize| rows.by_ref().take(count).collect::<Vec<_>>();
+    let doc = if leaves {
+        "Impact on this foot at the end of single support on the other (eq. 12), with its Jacobian in w = (q, q̇⁻)."
     } else {
-        (
-            "Impact on this foot at the end of a flight (eq. 12), with its Jacobian in (q, ṗ⁻, q̇⁻): rows are q̇⁺, the impulse, \
-         the landing foot's vertical velocity before.",
-            "∂(q̇⁺, impulse, landing)/∂(q, Ẋ⁻)",
-        )
+        "Impact on this foot at the end of a flight (eq. 12), with its Jacobian in w = (q, ṗ⁻, q̇⁻)."
     };
+    let components = values.len();
     let mut kernel = Kernel::new(transition.kernel(""), doc)
-        .input("q", q)
+        .input("q", q.clone())
         .input(velocities.name, velocities.symbols)
         .vector("qd_plus", solution, "q̇⁺, before the legs swap names")
         .vector("impulse", values, "impulse on the landing foot, N·s");
@@ -254,8 +254,14 @@ fn landing(model: &mut Model, transition: Transition, leg: usize) -> Kernel {
     }
     kernel = kernel
         .scalar("landing", landing_velocity, "vertical velocity of the landing foot before, m/s")
-        .matrix("jacobian", jacobian, rows);
+        .matrix("qd_plus_w", rows(q.len()), "∂q̇⁺/∂w")
+        .matrix("impulse_w", rows(components), "∂impulse/∂w");
+    if leaves {
+        kernel = kernel.matrix("leaving_w", rows(1), "∂leaving/∂w");
+    }
+    kernel = kernel.matrix("landing_w", rows(1), "∂landing/∂w");
     let Some(pitch) = couple.pop() else { return kernel };
+    let components = couple.len();
     kernel
         .vector(
             "couple",
@@ -263,7 +269,8 @@ fn landing(model: &mut Model, transition: Transition, leg: usize) -> Kernel {
             "half the difference of the real feet's impulses times their distance, y and z, N·m·s",
         )
         .scalar("pitch", pitch, "change of the angular momentum about the platform's transverse axis, N·m·s")
-        .matrix("couple_jacobian", couple_rows, "∂(couple, pitch)/∂(q, q̇⁻)")
+        .matrix("couple_w", rows(components), "∂couple/∂w")
+        .matrix("pitch_w", rows(1), "∂pitch/∂w")
 }
 
 /// An impact's results, each with its weight, and the adjoint of its linear system.
@@ -273,6 +280,8 @@ struct WeightedImpact {
     xi: Vec<Var>,
     /// Weights of the other results.
     outputs: Vec<Var>,
+    /// What these are.
+    blocks: Vec<Block>,
     /// Symbols of q̇⁺.
     plus: Vec<Var>,
     /// A sum whose partial derivatives, with q̇⁺ and the adjoint held, are total ones of the weighted results.
@@ -311,14 +320,23 @@ impl WeightedImpact {
         for (z, residual) in adjoint.iter().zip(&impact.residual) {
             sum += &(&Poly::from(*z) * residual);
         }
-        WeightedImpact { velocities: impact.velocities, xi, outputs, plus: impact.plus, sum, solution }
+        WeightedImpact {
+            velocities: impact.velocities,
+            xi,
+            outputs,
+            blocks: impact.blocks,
+            plus: impact.plus,
+            sum,
+            solution,
+        }
     }
 }
 
 /// Second derivatives of an impact's weighted results.
 fn landing_curvature(model: &mut Model, transition: Transition, leg: usize) -> Kernel {
     let q = model.q(0);
-    let WeightedImpact { velocities, xi, outputs, plus, sum, solution } = WeightedImpact::new(model, transition, leg);
+    let WeightedImpact { velocities, xi, outputs, blocks, plus, sum, solution } =
+        WeightedImpact::new(model, transition, leg);
     let by_q: Vec<Poly> = q.iter().map(|s| model.ring.derivative(&sum, *s)).collect();
     let raw = [model.hessian(&by_q, &q), model.jacobian(&by_q, &velocities.symbols), model.jacobian(&by_q, &plus)];
     let mut insert = |rows: &Vec<Vec<Poly>>| -> Vec<Vec<Poly>> {
@@ -344,7 +362,7 @@ fn landing_curvature(model: &mut Model, transition: Transition, leg: usize) -> K
         .input("q", q)
         .input(velocities.name, velocities.symbols)
         .input("xi", xi)
-        .input("outputs", outputs)
+        .blocks("outputs", outputs, blocks)
         .matrix("q_q", qq, "∂²/∂q∂q")
         .matrix(block, q_before, what)
         .matrix("q_plus", q_plus, "∂²/∂q∂q̇⁺")
@@ -369,12 +387,14 @@ impl TakeOff {
     }
 
     /// All of it, each with its weight, and the weights.
-    fn weighted(&self, model: &mut Model) -> (Vec<Var>, Poly) {
-        let weights = symbols(model, "w", self.place.len() + self.velocity.len() + 1);
+    fn weighted(&self, model: &mut Model) -> (Input, Poly) {
+        let blocks =
+            vec![Block::vector("r", self.place.len()), Block::vector("v", self.velocity.len()), Block::scalar("lift")];
+        let weights = symbols(model, "w", Block::total(&blocks));
         let terms = self.place.iter().chain(&self.velocity).chain([&self.lift]);
         let weighted = weights.iter().zip(terms).map(|(weight, term)| &Poly::from(*weight) * term);
         let sum = weighted.fold(Poly::zero(), |sum, term| &sum + &term);
-        (weights, sum)
+        (Input::of_blocks("weights", weights, blocks), sum)
     }
 
     fn kernel(self, model: &Model, transition: Transition) -> Kernel {
@@ -403,7 +423,7 @@ impl TakeOff {
 
 /// A sum of weighted results: the inputs and the sum.
 pub struct Results {
-    pub inputs: Vec<(&'static str, Vec<Var>)>,
+    pub inputs: Vec<Input>,
     pub sum: Poly,
     /// To be inserted after differentiation.
     pub solution: BTreeMap<Var, Poly>,
@@ -412,17 +432,18 @@ pub struct Results {
 impl Results {
     /// Of what a transition does.
     pub fn new(model: &mut Model, transition: Transition) -> Results {
-        let q = ("q", model.q(0));
+        let q = Input::new("q", model.q(0));
         match transition.lands() {
             None => {
                 let (weights, sum) = TakeOff::new(model, transition).weighted(model);
-                let inputs = vec![q, ("qd", model.q(1)), ("qdd", model.q(2)), ("weights", weights)];
+                let inputs = vec![q, Input::new("qd", model.q(1)), Input::new("qdd", model.q(2)), weights];
                 Results { inputs, sum, solution: BTreeMap::new() }
             }
             Some(leg) => {
                 let impact = WeightedImpact::new(model, transition, leg);
-                let velocities = (impact.velocities.name, impact.velocities.symbols);
-                let inputs = vec![q, velocities, ("xi", impact.xi), ("outputs", impact.outputs)];
+                let velocities = Input::new(impact.velocities.name, impact.velocities.symbols);
+                let outputs = Input::of_blocks("outputs", impact.outputs, impact.blocks);
+                let inputs = vec![q, velocities, Input::new("xi", impact.xi), outputs];
                 Results { inputs, sum: impact.sum, solution: impact.solution }
             }
         }

@@ -1,6 +1,7 @@
 //! The mechanism's numbers as a static value of the runtime's types.
 
 use super::function::Function;
+use super::shapes::shapes;
 use super::tokens::{Written, float, floats, option, whole};
 use crate::mechanism::{Actuated, Body, Mechanism, Member, Point, Spot, VirtualLeg, points};
 use crate::spec::{HalfSteps, Limits, Rotation};
@@ -33,6 +34,7 @@ pub fn description(
     let (bodies, joints) = (each(&m.bodies, |b| body(b, runtime))?, each(&m.joints, |j| joint(j, runtime))?);
     let (legs, limits) = (each(&m.legs, |l| leg(l, runtime))?, limits(&m.limits, runtime)?);
     let (unactuated, order) = (whole(m.unactuated), whole(m.polynomial_order));
+    let shapes = shapes(functions, &quote!(#runtime::shape::Shapes), runtime)?;
     let operations = functions.iter().map(|f| operations(f, runtime));
     let corners = each(&m.corners, |s| spot(s, runtime))?;
     let points = points(m).into_iter().map(|p| point(&p, runtime));
@@ -56,6 +58,7 @@ pub fn description(
             points: &[#(#points),*],
             lowest: &[#(#lowest),*],
             limits: #limits,
+            shapes: &#shapes,
             operations: &[#(#operations),*],
         }
     })

@@ -14,6 +14,7 @@ mod gait;
 mod lines;
 mod modules;
 mod scopes;
+mod shapes;
 mod specification;
 mod tokens;
 mod whole;

@@ -4,6 +4,7 @@ use super::description::{body, each};
 use super::function::{Function, functions};
 use super::gait::{header, items, methods};
 use super::modules::key;
+use super::shapes::shapes;
 use super::tokens::{Written, doc, float, floats, path, print, whole as number};
 use crate::dynamics::whole_kernels;
 use crate::mechanism::{Whole, WholeJoint, WholeLeg};
@@ -43,6 +44,7 @@ fn implementation(whole: &Whole, functions: &[Function], runtime: &Path) -> Writ
     let bodies = each(&whole.bodies, |b| body(b, runtime))?;
     let joints = each(&whole.joints, |j| joint(j, runtime))?;
     let legs = each(&whole.legs, |l| leg(l, runtime))?;
+    let shapes = shapes(functions, &quote!(#runtime::whole::Shapes), runtime)?;
     let methods = methods(functions)?;
     Ok(quote! {
         #text
@@ -56,6 +58,7 @@ fn implementation(whole: &Whole, functions: &[Function], runtime: &Path) -> Writ
             bodies: &[#(#bodies),*],
             joints: &[#(#joints),*],
             legs: &[#(#legs),*],
+            shapes: &#shapes,
         };
 
         impl #runtime::whole::Whole for Whole {

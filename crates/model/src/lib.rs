@@ -11,6 +11,7 @@ pub mod family;
 pub mod limit;
 pub mod motion;
 mod numbers;
+pub mod shape;
 pub mod units;
 pub mod whole;
 
@@ -49,9 +50,16 @@ pub struct Description {
     /// Which of these can be the lowest: whose heights [`Gait::heights`] gives.
     pub lowest: &'static [usize],
     pub limits: Limits,
+    /// Where everything stands in what the kernels give.
+    pub shapes: &'static shape::Shapes,
     /// What each generated kernel costs.
     pub operations: &'static [Operations],
 }
+
+/// Components of what points somewhere, in world axes.
+pub const FORWARD: usize = 0;
+pub const UP: usize = 1;
+pub const SIDEWAYS: usize = 2;
 
 /// How the platform may rotate: θ is the last of q, about Zf or about Xf.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -210,9 +218,10 @@ pub struct Operations {
 }
 
 impl Description {
-    /// Tells one robot and gait from another: a hash of all of its numbers.
+    /// Tells one robot and gait from another: a hash of all that describes them. How their kernels are written is no part of it.
     pub fn fingerprint(&self) -> String {
-        format!("{:016x}", hash(&format!("{self:?}")))
+        let described = Description { shapes: &shape::Shapes::NONE, operations: &[], ..self.clone() };
+        format!("{:016x}", hash(&format!("{described:?}")))
     }
 
     /// Whether it is a gait of the build's first robot, which the command line needs no name for.

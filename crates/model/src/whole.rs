@@ -11,7 +11,7 @@
 //! H takes the vertical (a unit vector, up) and the angular velocity in the platform's axes: no angles of the platform
 //! are needed, and there is none that is singular. Forces are in N in the platform's axes too.
 
-use super::Body;
+use super::{Body, shape};
 use std::ops::Range;
 
 /// What a whole robot is made of, in numbers.
@@ -24,6 +24,13 @@ pub struct Description {
     pub bodies: &'static [Body],
     pub joints: &'static [Joint],
     pub legs: &'static [Leg],
+    /// Where everything stands in what the kernels give.
+    pub shapes: &'static Shapes,
+}
+
+shape::all! {
+    /// Shapes of the kernels that give more than one thing.
+    Shapes { inertia_and_bias: InertiaAndBias, feet: Feet }
 }
 
 /// A joint of a real leg.

@@ -4,6 +4,7 @@
 //! numbers of the linear systems behind them in the robot's units, which tell a singular case from a result.
 
 use nalgebra::DMatrix;
+use piaffe_model::shape::MomentumTerms;
 use piaffe_model::units::Units;
 use piaffe_model::{Description, Gait, Rotation};
 use serde::Deserialize;
@@ -99,13 +100,15 @@ fn evaluate_state(gait: &dyn Gait, index: usize, state: &State) -> Result<Value,
     if let Some(gamma) = &state.gamma {
         put("Gamma", json!(gamma));
     }
-    let energy = vector(2, |o| gait.energy(&state.x, &state.xd, o));
-    put("kinetic_energy", json!(energy[0]));
-    put("potential_energy", json!(energy[1]));
-    put("total_energy", json!(energy[0] + energy[1]));
-    let com = vector(2 * np, |o| gait.centre_of_mass(&state.x, &state.xd, o));
-    put("com", json!(com[..np]));
-    put("com_velocity", json!(com[np..]));
+    let s = d.shapes;
+    let energy = vector(s.energy.len, |o| gait.energy(&state.x, &state.xd, o));
+    let [kinetic, potential] = [s.energy.kinetic, s.energy.potential].map(|block| block.value(&energy));
+    put("kinetic_energy", json!(kinetic));
+    put("potential_energy", json!(potential));
+    put("total_energy", json!(kinetic + potential));
+    let com = vector(s.centre_of_mass.len, |o| gait.centre_of_mass(&state.x, &state.xd, o));
+    put("com", json!(s.centre_of_mass.position.of(&com)));
+    put("com_velocity", json!(s.centre_of_mass.velocity.of(&com)));
     let feet = [0, 1].map(|leg| vector(n * np, |o| gait.foot_jacobian(leg, q, o)));
     let (scaled, scaled_feet) = in_own_units(gait.description(), &a, &feet);
     for leg in 0..2 {
@@ -119,8 +122,8 @@ fn evaluate_state(gait: &dyn Gait, index: usize, state: &State) -> Result<Value,
         put(
             &format!("impact12_leg{i}"),
             unless_singular(condition, "the inertia seen by the foot vanishes", || {
-                let r = vector(n + np, |o| gait.impact(leg, q, &state.xd, o));
-                json!({ "Xdot_plus": r[..n], "impulse": r[n..], "cond": condition })
+                let r = vector(s.impact.len, |o| gait.impact(leg, q, &state.xd, o));
+                json!({ "Xdot_plus": s.impact.xd_plus.of(&r), "impulse": s.impact.impulse.of(&r), "cond": condition })
             }),
         );
     }
@@ -131,8 +134,11 @@ fn evaluate_state(gait: &dyn Gait, index: usize, state: &State) -> Result<Value,
             condition,
             "the two feet cannot be brought to rest independently (a level touchdown, or a stretched pose)",
             || {
-                let r = vector(n + 4 * np, |o| gait.impact_both(q, &state.xd, o));
-                json!({ "Xdot_plus": r[..n], "impulse1": r[n..n + np], "impulse2": r[n + np..n + 2 * np], "cond": condition })
+                let (shape, r) = (&s.impact_both, vector(s.impact_both.len, |o| gait.impact_both(q, &state.xd, o)));
+                json!({
+                    "Xdot_plus": shape.xd_plus.of(&r), "impulse1": shape.impulse1.of(&r), "impulse2": shape.impulse2.of(&r),
+                    "cond": condition,
+                })
             },
         ),
     );
@@ -159,17 +165,19 @@ fn single_support(gait: &dyn Gait, leg: usize, state: &State, a: &[f64], foot: &
     let (q, qd) = (&state.x[np..], &state.xd[np..]);
     let mut xd = vector(np, |o| gait.platform_velocity(leg, q, qd, o));
     xd.extend_from_slice(qd);
-    let terms = vector(5, |o| gait.momentum_terms(leg, q, qd, o));
+    let s = d.shapes;
+    let terms = vector(s.momentum_terms.len, |o| gait.momentum_terms(leg, q, qd, o));
     let mut result = Map::new();
     result.insert("Xdot".into(), json!(xd));
-    for (key, value) in ["f1", "f2", "sigma", "c", "sigmadot"].iter().zip(&terms) {
-        result.insert((*key).into(), json!(value));
+    let MomentumTerms { f1, f2, sigma, c, sigmadot, .. } = s.momentum_terms;
+    for (key, block) in [("f1", f1), ("f2", f2), ("sigma", sigma), ("c", c), ("sigmadot", sigmadot)] {
+        result.insert(key.into(), json!(block.value(&terms)));
     }
     result.insert("H".into(), json!(vector(n, |o| gait.bias(q, qd, o))));
     result.insert("Hi".into(), json!(vector(np, |o| gait.foot_bias(leg, q, qd, o))));
     if let Some(gamma) = &state.gamma {
-        let r = vector(n + np, |o| gait.forward(leg, q, qd, gamma, o));
-        result.insert("forward".into(), json!({ "Xddot": r[..n], "F": r[n..] }));
+        let r = vector(s.forward.len, |o| gait.forward(leg, q, qd, gamma, o));
+        result.insert("forward".into(), json!({ "Xddot": s.forward.xdd.of(&r), "F": s.forward.f.of(&r) }));
     }
     if let Some(xdd) = &state.xdd {
         let condition = condition(&inverse_system(gait, leg, q, a, foot));
@@ -178,12 +186,10 @@ fn single_support(gait: &dyn Gait, leg: usize, state: &State, a: &[f64], foot: &
             "f1 vanishes: no torque-free coordinate follows from the momentum (eq. 10)",
             || {
                 let prescribed: Vec<f64> = (0..d.prescribed()).map(|k| xdd[np + d.prescribed_index(k)]).collect();
-                let r = vector(n + d.joints() + np, |o| gait.inverse(leg, q, qd, &prescribed, o));
-                let torques: Vec<f64> = d.independent_torques().map(|j| r[n + j]).collect();
-                json!({
-                    "Xddot": r[..n], "betaddot": r[np + d.unactuated], "Gamma": torques,
-                    "F": r[n + d.joints()..], "cond": condition,
-                })
+                let r = vector(s.inverse.len, |o| gait.inverse(leg, q, qd, &prescribed, o));
+                let [xdd, gamma, f] = [s.inverse.xdd, s.inverse.gamma, s.inverse.f].map(|block| block.of(&r));
+                let torques: Vec<f64> = d.independent_torques().map(|j| gamma[j]).collect();
+                json!({ "Xddot": xdd, "betaddot": xdd[np + d.unactuated], "Gamma": torques, "F": f, "cond": condition })
             },
         );
         result.insert("inverse".into(), inverse);
@@ -252,12 +258,9 @@ fn inverse_system(gait: &dyn Gait, leg: usize, q: &[f64], a: &[f64], foot: &[f64
         }
     }
     if level == 1 {
-        let (rows, columns) = (joints + np + 1, 3 * nq);
-        let still = vec![0.0; nq];
-        let jacobian = vector(1 + joints + np + rows * columns, |o| {
-            gait.inverse_jacobian(leg, q, &still, &still[..d.prescribed()], o);
-        });
-        let balance = &jacobian[1 + joints + np + (rows - 1) * columns..];
+        let (shape, still) = (&d.shapes.inverse_jacobian, vec![0.0; nq]);
+        let inverse = vector(shape.len, |o| gait.inverse_jacobian(leg, q, &still, &still[..d.prescribed()], o));
+        let balance = shape.balance_w.of(&inverse);
         m[(n + np, np)] = balance[2 * nq + d.unactuated] / Units::new(d).inertia();
     }
     m

@@ -115,7 +115,7 @@ impl<'a> Walk<'a> {
                     s if s >= 1.0 => cycle.sample(phase, last),
                     s => {
                         cycle.glance(phase, s, &mut glance)?;
-                        Sample::of(&glance, d, s)
+                        Sample::of(&glance, s)
                     }
                 };
                 let mut moment = role.moment(&sample, stance_foot);
@@ -161,14 +161,13 @@ impl Role<'_> {
     fn moment(&self, sample: &Sample, stance_foot: Point) -> Moment {
         let d = self.gait.description();
         let y = Quantities::new(d);
-        let (nc, nj, nq) = (d.positions(), d.joints(), d.orientations());
+        let (nc, nj, shape) = (d.positions(), d.joints(), &d.shapes.inverse);
         let at = |p: Point| [0, 1, 2].map(|k| p[k] + stance_foot[k]);
         let [q, qd, qdd] = sample.state.map(|v| self.renamed(v));
         let prescribed: Vec<f64> = (0..d.prescribed()).map(|k| qdd[d.prescribed_index(k)]).collect();
         let mut velocity = vec![0.0; nc];
         self.gait.platform_velocity(self.leg, &q, &qd, &mut velocity);
-        // Ẍ, Γ, F.
-        let mut inverse = vec![0.0; nc + nq + nj + nc];
+        let mut inverse = shape.zeros();
         self.gait.inverse(self.leg, &q, &qd, &prescribed, &mut inverse);
         let plain = Role { gait: self.gait, leg: self.leg, mirrored: false };
         Moment {
@@ -176,7 +175,11 @@ impl Role<'_> {
             half_step: 0,
             share: sample.share,
             stance: self.leg,
-            platform: [at(self.point(sample.platform)), plain.point(&velocity), plain.point(&inverse[..nc])],
+            platform: [
+                at(self.point(sample.platform)),
+                plain.point(&velocity),
+                plain.point(&shape.xdd.of(&inverse)[..nc]),
+            ],
             torque: self.renamed(&sample.quantities[y.torque(0)..][..nj]),
             force: self.point(&sample.quantities[y.force(0)..][..nc]),
             swing: at(self.point(sample.swing)),

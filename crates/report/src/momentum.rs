@@ -7,11 +7,11 @@ use super::subject::Subject;
 
 pub fn momentum(s: &Subject) -> Figure {
     let mut plot = s.time_plot("Momentum about the stance foot", "kg·m²/s");
-    let nq = s.description().orientations();
+    let shape = &s.description().shapes.momentum;
     let sigma = |m: &piaffe_optimizer::walk::Moment| {
-        let mut momentum = vec![0.0; 1 + 2 * nq];
+        let mut momentum = shape.zeros();
         s.gait.momentum(m.stance, &m.q, &m.qd, &mut momentum);
-        momentum[0]
+        shape.sigma.value(&momentum)
     };
     for (k, segment) in s.over_time(sigma).into_iter().enumerate() {
         let leg = s.walk.half_steps[k].leg;

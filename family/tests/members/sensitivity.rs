@@ -3,6 +3,8 @@
 use super::draws::{GENERAL, member};
 use super::kernels::{assert_close, filled, vector};
 use piaffe::model::family::{Family, Parametric};
+use piaffe::model::shape::MomentumTerms;
+use piaffe::model::{FORWARD, UP};
 use piaffe_family::FAMILIES;
 
 /// Of sums of outputs that are of order one or more.
@@ -45,23 +47,28 @@ fn of_inverse_dynamics() {
         let d = robot.description();
         let (n, joints, np) = (d.orientations(), d.joints(), d.positions());
         let (q, qd, qdd) = (vector(n, 0.8, rng), vector(n, 4.0, rng), vector(d.prescribed(), 30.0, rng));
-        let jacobian = |m: &dyn Parametric| {
-            filled(1 + (joints + np) + (joints + np + 1) * 3 * n, |o| m.inverse_jacobian(leg, &q, &qd, &qdd, o))
-        };
+        let shape = &d.shapes.inverse_jacobian;
+        let jacobian = |m: &dyn Parametric| filled(shape.len, |o| m.inverse_jacobian(leg, &q, &qd, &qdd, o));
         let own = jacobian(robot);
         let mut all: Vec<f64> = (0..n - 1).map(|k| qdd[k]).collect();
-        all.insert(d.unactuated, own[0]);
-        let by_beta: Vec<f64> = own[1 + joints + np..].chunks(3 * n).map(|row| row[2 * n + d.unactuated]).collect();
-        let f1 = by_beta[joints + np];
+        all.insert(d.unactuated, shape.beta_dd.value(&own));
+        let rows = shape.gamma_w.each(&own).chain(shape.f_w.each(&own));
+        let by_beta: Vec<f64> = rows.map(|row| row[2 * n + d.unactuated]).collect();
+        let f1 = shape.balance_w.of(&own)[2 * n + d.unactuated];
         if f1.abs() < 0.05 {
             return; // eq. 10 is close to singular
         }
         // β̈ follows from the balance: its weight is the adjoint.
         let weights = vector(joints + np, 1.0, rng);
         let (mut gamma, phi) = (weights[..joints].to_vec(), &weights[joints..]);
-        gamma.push(-dot(&weights, &by_beta[..joints + np]) / f1);
-        let by_lump = filled(robot.lumps().len(), |o| robot.sensitivity(leg, &q, &qd, &all, &gamma, phi, &[0.0; 6], o));
-        let value = |m: &dyn Parametric| dot(&weights, &jacobian(m)[1..1 + joints + np]);
+        gamma.push(-dot(&weights, &by_beta) / f1);
+        let by_lump = filled(robot.lumps().len(), |o| {
+            robot.sensitivity(leg, &q, &qd, &all, &gamma, phi, &d.shapes.curvature.others.zeros(), o)
+        });
+        let value = |m: &dyn Parametric| {
+            let own = jacobian(m);
+            dot(&weights, &[shape.gamma.of(&own), shape.f.of(&own)].concat())
+        };
         assert_close("Γ, F", &robot.pull_back(&by_lump), &differences(family, robot, value), TOLERANCE);
     });
 }
@@ -72,16 +79,26 @@ fn of_momentum_heights_and_velocities() {
         let d = robot.description();
         let (n, np) = (d.orientations(), d.positions());
         let (q, qd) = (vector(n, 1.0, rng), vector(n, 5.0, rng));
-        let weights = vector(6, 1.0, rng);
+        let (s, to) = (d.shapes, &d.shapes.curvature.others);
+        let weights = vector(to.len, 1.0, rng);
         let (gamma, phi) = (vec![0.0; d.joints() + 1], vec![0.0; np]);
         let by_lump = filled(robot.lumps().len(), |o| {
             robot.sensitivity(leg, &q, &qd, &vec![0.0; n], &gamma, &phi, &weights, o);
         });
         let value = |m: &dyn Parametric| {
-            let terms = filled(5, |o| m.momentum_terms(leg, &q, &qd, o));
-            let place = filled(2 * np + 2 * np * n, |o| m.placement(leg, &q, o));
-            let velocity = filled(np + 2 * np * n, |o| m.swing_velocity(leg, &q, &qd, o));
-            dot(&weights, &[terms[2], terms[4], place[np + 1], place[0], velocity[1], place[1]])
+            let terms = filled(s.momentum_terms.len, |o| m.momentum_terms(leg, &q, &qd, o));
+            let place = filled(s.placement.len, |o| m.placement(leg, &q, o));
+            let velocity = filled(s.swing_velocity.len, |o| m.swing_velocity(leg, &q, &qd, o));
+            let (platform, swing) = (s.placement.p.of(&place), s.placement.swing.of(&place));
+            let weighted = [
+                (to.sigma, s.momentum_terms.sigma.value(&terms)),
+                (to.sigmad, s.momentum_terms.sigmadot.value(&terms)),
+                (to.swing_height, swing[UP]),
+                (to.platform_x, platform[FORWARD]),
+                (to.swing_velocity, s.swing_velocity.v.of(&velocity)[UP]),
+                (to.platform_height, platform[UP]),
+            ];
+            weighted.iter().map(|(weight, value)| weight.value(&weights) * value).sum()
         };
         let expected = differences(family, robot, value);
         assert_close("σ, σ̇, heights", &robot.pull_back(&by_lump), &expected, TOLERANCE);
@@ -89,8 +106,9 @@ fn of_momentum_heights_and_velocities() {
         let weights = vector(3, 1.0, rng);
         let by_lump = filled(robot.lumps().len(), |o| robot.terms_sensitivity(leg, &q, &qd, &weights, o));
         let value = |m: &dyn Parametric| {
-            let terms = filled(5, |o| m.momentum_terms(leg, &q, &qd, o));
-            dot(&weights, &[terms[0], terms[1], terms[3]])
+            let terms = filled(s.momentum_terms.len, |o| m.momentum_terms(leg, &q, &qd, o));
+            let MomentumTerms { f1, f2, c, .. } = s.momentum_terms;
+            dot(&weights, &[f1, f2, c].map(|block| block.value(&terms)))
         };
         assert_close("f1, f2, c", &robot.pull_back(&by_lump), &differences(family, robot, value), TOLERANCE);
     });
@@ -100,17 +118,15 @@ fn of_momentum_heights_and_velocities() {
 fn of_touchdowns() {
     each(|family, robot, leg, rng| {
         let d = robot.description();
-        let (n, np) = (d.orientations(), d.positions());
+        let (n, s) = (d.orientations(), &d.shapes.touchdown);
         let (q, qd) = (vector(n, 0.8, rng), vector(n, 3.0, rng));
-        let shared = if d.lateral { 3 } else { 0 };
-        let weights = vector(n + np + 2 + shared, 1.0, rng);
+        let weights = vector(n + d.shapes.touchdown_curvature.outputs.len, 1.0, rng);
         let (xi, outputs) = weights.split_at(n);
         let by_lump = filled(robot.lumps().len(), |o| robot.touchdown_sensitivity(leg, &q, &qd, xi, outputs, o));
         let value = |m: &dyn Parametric| {
-            let rows = n + np + 2;
-            let jacobian = rows * 2 * n;
-            let results = filled(rows + jacobian + shared, |o| m.touchdown(leg, &q, &qd, o));
-            dot(&weights[..rows], &results[..rows]) + dot(&weights[rows..], &results[rows + jacobian..])
+            let results = filled(s.len, |o| m.touchdown(leg, &q, &qd, o));
+            let values = [s.qd_plus, s.impulse, s.leaving, s.landing, s.couple, s.pitch];
+            dot(&weights, &values.map(|block| block.of(&results)).concat())
         };
         assert_close("touchdown", &robot.pull_back(&by_lump), &differences(family, robot, value), TOLERANCE);
     });

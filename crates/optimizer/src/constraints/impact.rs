@@ -3,8 +3,9 @@
 //! Impulse upward; tangential impulse at most μ times it; vertical velocity of the leaving foot ≥ 0.
 
 use super::sharing::{applies, first, length, offsets, second};
+use piaffe_model::shape::TouchdownCurvatureOutputs;
 use piaffe_model::units::Units;
-use piaffe_model::{Description, Limit};
+use piaffe_model::{Description, FORWARD, Limit, SIDEWAYS, UP};
 use piaffe_number::Scalar;
 
 /// Formulas on the results of a touchdown kernel.
@@ -15,7 +16,8 @@ pub struct ImpactConstraints<T = f64> {
     /// The robot's units of an impulse and of a velocity.
     unit: f64,
     speed: f64,
-    components: usize,
+    /// Where the results stand.
+    y: TouchdownCurvatureOutputs,
     /// The real feet that land, from the virtual foot along Xf, if their limits count.
     feet: Vec<f64>,
 }
@@ -29,7 +31,7 @@ impl<T: Scalar> ImpactConstraints<T> {
             lateral: description.lateral,
             unit: units.impulse(),
             speed: units.speed(),
-            components: description.positions(),
+            y: description.shapes.touchdown_curvature.outputs,
             feet: if applies(description) { offsets(description) } else { Vec::new() },
         }
     }
@@ -63,7 +65,8 @@ impl<T: Scalar> ImpactConstraints<T> {
 
     /// Where impulse and couple stand among a touchdown's results.
     fn index(&self, k: usize) -> usize {
-        if k < self.components { k } else { k + 2 }
+        let components = self.y.impulse.len();
+        k.checked_sub(components).map_or_else(|| self.y.impulse.place(k), |k| self.y.couple.place(k))
     }
 
     /// Scaled value `i` from (impulse…, leaving, landing, couple…).
@@ -72,12 +75,13 @@ impl<T: Scalar> ImpactConstraints<T> {
         if let Some(foot) = i.checked_sub(self.of_virtual_leg()) {
             return self.friction_of_foot(mu, foot, |k| y[self.index(k)]) / unit;
         }
+        let impulse = self.y.impulse.of(y);
         match (i, self.lateral) {
-            (0, _) => y[1] / unit,
-            (1, true) => (mu * y[1] - norm(y)) / unit,
-            (1, false) => (mu * y[1] + y[0]) / unit,
-            (2, false) => (mu * y[1] - y[0]) / unit,
-            _ => y[self.components] / T::from(self.speed),
+            (0, _) => impulse[UP] / unit,
+            (1, true) => (mu * impulse[UP] - norm(impulse)) / unit,
+            (1, false) => (mu * impulse[UP] + impulse[FORWARD]) / unit,
+            (2, false) => (mu * impulse[UP] - impulse[FORWARD]) / unit,
+            _ => self.y.leaving.value(y) / T::from(self.speed),
         }
     }
 }
@@ -94,20 +98,21 @@ impl ImpactConstraints {
             let gradient = first(&own, |v| self.friction_of_foot(self.friction.into(), foot, |k| v[k]));
             return (0..5).for_each(|k| add(self.index(k), gradient[k] / self.unit));
         }
-        let mu = self.friction / self.unit;
+        let (mu, impulse) = (self.friction / self.unit, self.y.impulse);
         match (i, self.lateral) {
-            (0, _) => add(1, 1.0 / self.unit),
+            (0, _) => add(impulse.place(UP), 1.0 / self.unit),
             (1, true) => {
-                let norm = norm(y).max(TINY * self.unit);
-                add(0, -y[0] / norm / self.unit);
-                add(2, -y[2] / norm / self.unit);
-                add(1, mu);
+                let norm = norm(impulse.of(y)).max(TINY * self.unit);
+                for k in [FORWARD, SIDEWAYS].map(|component| impulse.place(component)) {
+                    add(k, -y[k] / norm / self.unit);
+                }
+                add(impulse.place(UP), mu);
             }
             (1, false) | (2, false) => {
-                add(1, mu);
-                add(0, if i == 1 { 1.0 } else { -1.0 } / self.unit);
+                add(impulse.place(UP), mu);
+                add(impulse.place(FORWARD), if i == 1 { 1.0 } else { -1.0 } / self.unit);
             }
-            _ => add(self.components, 1.0 / self.speed),
+            _ => add(self.y.leaving.place(0), 1.0 / self.speed),
         }
     }
 
@@ -124,9 +129,10 @@ impl ImpactConstraints {
         if !(self.lateral && i == 1) {
             return;
         }
-        let norm = norm(y).max(TINY * self.unit);
-        for a in [0, 2] {
-            for b in [0, 2] {
+        let norm = norm(self.y.impulse.of(y)).max(TINY * self.unit);
+        let tangential = [FORWARD, SIDEWAYS].map(|component| self.y.impulse.place(component));
+        for a in tangential {
+            for b in tangential {
                 let unit = if a == b { 1.0 } else { 0.0 };
                 add(a, b, (y[a] * y[b] / (norm * norm) - unit) / norm / self.unit);
             }
@@ -138,6 +144,6 @@ impl ImpactConstraints {
 const TINY: f64 = 1e-13;
 
 /// Norm of the tangential part of an impulse in space.
-fn norm<T: Scalar>(y: &[T]) -> T {
-    (y[0] * y[0] + y[2] * y[2]).sqrt()
+fn norm<T: Scalar>(impulse: &[T]) -> T {
+    (impulse[FORWARD] * impulse[FORWARD] + impulse[SIDEWAYS] * impulse[SIDEWAYS]).sqrt()
 }

@@ -26,7 +26,7 @@ use hessian::Workspace;
 use phase::Phase;
 use piaffe_model::motion::{Costs, Criterion, HalfStep, Motion};
 use piaffe_model::units::Units;
-use piaffe_model::{Description, Gait, HalfSteps, Limit};
+use piaffe_model::{Description, FORWARD, Gait, HalfSteps, Limit};
 pub use problem::{CLOSURE, Place};
 pub use sample::Sample;
 pub use still::{AT_REST, Still};
@@ -371,7 +371,7 @@ impl<'a> Cycle<'a> {
             let before = self.before(k);
             for row in 0..d.orientations() {
                 let (from, sign) = renamed(d, row);
-                let (q, qd) = (self.phases[before].q_end[from], self.phases[before].touchdown[from]);
+                let (q, qd) = (self.phases[before].q_end[from], self.phases[before].qd_plus()[from]);
                 self.phases[k].q_start[row] = sign * q;
                 self.phases[k].qd_start[row] = sign * qd;
             }
@@ -385,7 +385,8 @@ impl<'a> Cycle<'a> {
             phase.instants.evaluate(self.gait, phase.leg, &phase.mesh, &phase.stance, &phase.parameters);
             let smoothing = self.smoothing * self.units.power();
             integrate(self.criterion, smoothing, &phase.mesh, &phase.instants, &mut phase.cost);
-            phase.travel = phase.instants.platform(d, phase.last())[0] - phase.instants.platform(d, 0)[0];
+            let x = |node: usize| phase.instants.platform(node)[FORWARD];
+            phase.travel = x(phase.last()) - x(0);
             self.travel += phase.travel;
             self.duration += t;
         }

@@ -7,16 +7,15 @@ use crate::cost::Integral;
 use crate::instant::{Glance, Instants};
 use crate::lgl::NODES;
 use crate::stance::{Layout, Mesh, Stance, Undefined};
+use piaffe_model::shape::{Block, Shapes};
 use piaffe_model::units::Units;
-use piaffe_model::{Description, Gait};
-
-/// Length of a touchdown's couple and pitch, which come after everything else.
-const SHARED: usize = 3;
+use piaffe_model::{Description, Gait, UP};
 
 /// State of a half step: what the last simulation left, and the derivatives of the last linearization.
 pub struct Phase {
     /// Stance leg.
     pub leg: usize,
+    pub shapes: &'static Shapes,
     pub mesh: Mesh,
     pub stance: Stance,
     pub instants: Instants,
@@ -37,7 +36,7 @@ pub struct Phase {
     /// `touchdown` and `placement` kernels at the end.
     pub touchdown: Vec<f64>,
     pub placement: Vec<f64>,
-    /// Of the touchdown the impulse, leaving and landing velocity and, where the platform rolls, couple and pitch.
+    /// What the touchdown gives beside q̇⁺, in the order of the weights of `touchdown_curvature`.
     pub impact: Vec<f64>,
     /// `momentum` kernel: σ and its gradient in (q, q̇), at the start and at the wanted end.
     pub momentum_start: Vec<f64>,
@@ -59,13 +58,13 @@ impl Phase {
     pub fn new(d: &Description, leg: usize, elements: usize) -> Phase {
         let mesh = Mesh::new(elements, d.polynomial_order);
         let layout = Layout::new(d, &mesh.basis);
-        let (nq, nc) = (d.orientations(), d.positions());
+        let (nq, shapes) = (d.orientations(), d.shapes);
         let n = Variables::new(d).total();
         let instants = Instants::new(d, &mesh);
-        let shared = if d.lateral { SHARED } else { 0 };
         let z = |count: usize| vec![0.0; count];
         Phase {
             leg,
+            shapes,
             stance: Stance::new(d, &mesh, leg),
             linearized: instants.values.clone(),
             instants,
@@ -78,11 +77,11 @@ impl Phase {
             qd_start: z(nq),
             q_end: z(nq),
             qd_end: z(nq),
-            touchdown: z((nq + nc + 2 + shared) * (1 + 2 * nq)),
-            impact: z(nc + 2 + shared),
-            placement: z(2 * nc + 2 * nc * nq),
-            momentum_start: z(1 + 2 * nq),
-            momentum_end: z(1 + 2 * nq),
+            touchdown: shapes.touchdown.zeros(),
+            impact: shapes.touchdown_curvature.outputs.zeros(),
+            placement: shapes.placement.zeros(),
+            momentum_start: shapes.momentum.zeros(),
+            momentum_end: shapes.momentum.zeros(),
             travel: 0.0,
             by_theta: z(layout.len() * n),
             travel_p: z(layout.len()),
@@ -134,34 +133,56 @@ impl Phase {
         &self.linearized[node * count..][..count]
     }
 
-    /// Row of ∂(q̇⁺, impulse, leaving, landing, couple, pitch)/∂(q, q̇⁻) at the end.
-    pub fn touchdown_row(&self, d: &Description, row: usize) -> &[f64] {
-        let nq = d.orientations();
-        let rows = nq + d.positions() + 2;
-        // Values of couple and pitch stand between their rows and those before.
-        let values = rows + if row < rows { 0 } else { SHARED };
-        &self.touchdown[values + row * 2 * nq..][..2 * nq]
+    /// q̇⁺ after the impact at the end, before the legs swap names.
+    pub fn qd_plus(&self) -> &[f64] {
+        self.shapes.touchdown.qd_plus.of(&self.touchdown)
     }
 
-    fn gather_impact(&mut self, d: &Description) {
-        let nq = d.orientations();
-        let rows = nq + d.positions() + 2;
-        let (first, shared) = self.impact.split_at_mut(rows - nq);
-        first.copy_from_slice(&self.touchdown[nq..rows]);
-        shared.copy_from_slice(&self.touchdown[rows * (1 + 2 * nq)..][..shared.len()]);
+    /// ∂/∂(q, q̇⁻) of an entry of q̇⁺.
+    pub fn qd_plus_row(&self, k: usize) -> &[f64] {
+        self.shapes.touchdown.qd_plus_w.row(&self.touchdown, k)
+    }
+
+    /// ∂/∂(q, q̇⁻) of an entry of `impact`.
+    pub fn impact_row(&self, i: usize) -> &[f64] {
+        let found = self.of_impact().into_iter().find(|[to, ..]| to.range().contains(&i));
+        let [to, _, rows] = found.unwrap_or([Block::NONE; 3]);
+        rows.row(&self.touchdown, i - to.range().start)
+    }
+
+    /// Where in `impact` something of the touchdown stands, where in `touchdown`, and where its gradients do there.
+    fn of_impact(&self) -> [[Block; 3]; 5] {
+        let (to, from) = (&self.shapes.touchdown_curvature.outputs, &self.shapes.touchdown);
+        [
+            [to.impulse, from.impulse, from.impulse_w],
+            [to.leaving, from.leaving, from.leaving_w],
+            [to.landing, from.landing, from.landing_w],
+            [to.couple, from.couple, from.couple_w],
+            [to.pitch, from.pitch, from.pitch_w],
+        ]
+    }
+
+    fn gather_impact(&mut self) {
+        for [to, from, _] in self.of_impact() {
+            to.of_mut(&mut self.impact).copy_from_slice(from.of(&self.touchdown));
+        }
+    }
+
+    /// Height of the swing foot at the wanted end, m.
+    pub fn landing_height(&self) -> f64 {
+        self.shapes.placement.swing.of(&self.placement)[UP]
     }
 
     /// ∂(vertical position of the swing foot)/∂q at the wanted end.
-    pub fn landing_gradient(&self, d: &Description) -> &[f64] {
-        let (nq, nc) = (d.orientations(), d.positions());
-        &self.placement[2 * nc + nc * nq + nq..][..nq]
+    pub fn landing_gradient(&self) -> &[f64] {
+        self.shapes.placement.swing_q.row(&self.placement, UP)
     }
 
     /// Evaluates what depends on the wanted end alone: the impact there, the foot's height, σ.
     pub fn end(&mut self, gait: &dyn Gait, variables: &Variables, own: &[f64]) {
         variables.end_state(own, &mut self.q_end, &mut self.qd_end);
         gait.touchdown(1 - self.leg, &self.q_end, &self.qd_end, &mut self.touchdown);
-        self.gather_impact(gait.description());
+        self.gather_impact();
         gait.placement(self.leg, &self.q_end, &mut self.placement);
         gait.momentum(self.leg, &self.q_end, &self.qd_end, &mut self.momentum_end);
     }
@@ -184,7 +205,7 @@ impl Phase {
         }
         self.parameters[layout.duration()] = own[variables.duration()];
         self.parameters[layout.beta()] = self.q_start[d.unactuated];
-        self.parameters[layout.sigma()] = self.momentum_start[0];
+        self.parameters[layout.sigma()] = self.shapes.momentum.sigma.value(&self.momentum_start);
     }
 
     /// Derivatives in the local parameters.
@@ -224,7 +245,7 @@ impl Phase {
         }
         self.by_theta[layout.duration() * n + own + variables.duration()] = 1.0;
         self.by_theta[row(layout.beta())].copy_from_slice(&self.start_by_theta[row(d.unactuated)]);
-        for (k, gradient) in self.momentum_start[1..].iter().enumerate() {
+        for (k, gradient) in self.shapes.momentum.sigma_w.of(&self.momentum_start).iter().enumerate() {
             for (s, c) in self.by_theta[row(layout.sigma())].iter_mut().zip(&self.start_by_theta[row(k)]) {
                 *s += gradient * c;
             }

@@ -26,7 +26,7 @@ pub fn equalities(d: &Description) -> usize {
 
 /// Where an impact's change of angular momentum about the transverse axis stands among its results.
 pub fn pitch(d: &Description) -> usize {
-    d.positions() + 2 + 2
+    d.shapes.touchdown_curvature.outputs.pitch.place(0)
 }
 
 /// What an inequality row is.
@@ -214,7 +214,7 @@ impl Cycle<'_> {
             for row in 0..nq {
                 let (from, sign) = renamed(d, row);
                 table[row * n + column + self.variables.q(from)] = sign;
-                let jacobian = self.phases[before].touchdown_row(d, from);
+                let jacobian = self.phases[before].qd_plus_row(from);
                 for j in 0..nq {
                     table[(nq + row) * n + column + self.variables.q(j)] = sign * jacobian[j];
                     table[(nq + row) * n + column + self.variables.qd(j)] = sign * jacobian[nq + j];
@@ -265,13 +265,14 @@ impl Cycle<'_> {
             }
             if let Some(row) = rows.next() {
                 p.project(&p.stance.sigma_p[last..last + np], 1.0 / momentum, row);
+                let (by_q, by_qd) = p.shapes.momentum.sigma_w.of(&p.momentum_end).split_at(nq);
                 for j in 0..nq {
-                    row[own(self.variables.q(j))] -= p.momentum_end[1 + j] / momentum;
-                    row[own(self.variables.qd(j))] -= p.momentum_end[1 + nq + j] / momentum;
+                    row[own(self.variables.q(j))] -= by_q[j] / momentum;
+                    row[own(self.variables.qd(j))] -= by_qd[j] / momentum;
                 }
             }
             if let Some(row) = rows.next() {
-                for (j, g) in p.landing_gradient(d).iter().enumerate() {
+                for (j, g) in p.landing_gradient().iter().enumerate() {
                     row[own(self.variables.q(j))] += g / length;
                 }
             }
@@ -284,10 +285,10 @@ impl Cycle<'_> {
                 row[k * m + self.variables.duration()] -= self.speed / length;
             }
         }
-        let pitch = nq + pitch(d);
+        let pitch = pitch(d);
         let pitching = if pitches(d) { self.phases.len() } else { 0 };
         for (k, (p, row)) in self.phases.iter().zip(rows.by_ref().take(pitching)).enumerate() {
-            let jacobian = p.touchdown_row(d, pitch);
+            let jacobian = p.impact_row(pitch);
             for j in 0..nq {
                 row[k * m + self.variables.q(j)] += jacobian[j] / momentum;
                 row[k * m + self.variables.qd(j)] += jacobian[nq + j] / momentum;
@@ -312,7 +313,7 @@ impl Cycle<'_> {
             for c in 0..count {
                 let row = &mut self.impact_rows[(k * count + c) * n..][..n];
                 self.impact.partials(c, &p.impact, |i, partial| {
-                    let jacobian = p.touchdown_row(d, nq + i);
+                    let jacobian = p.impact_row(i);
                     for j in 0..nq {
                         row[k * m + self.variables.q(j)] += partial * jacobian[j];
                         row[k * m + self.variables.qd(j)] += partial * jacobian[nq + j];
@@ -359,7 +360,7 @@ impl Problem for Cycle<'_> {
             let equalities = &mut out.equalities[k * CLOSURE..][..CLOSURE];
             equalities[0] = p.stance.beta[p.last()] - p.q_end[d.unactuated];
             equalities[1] = (p.stance.sigma[p.last()] - p.momentum_end[0]) / units.angular_momentum();
-            equalities[2] = p.placement[d.positions() + 1] / units.length;
+            equalities[2] = p.landing_height() / units.length;
         }
         let speed = self.speed_equation();
         let (own, holding) = out.equalities.split_at_mut(equalities(d));

@@ -2,7 +2,6 @@
 
 use super::Cycle;
 use crate::instant::Glance;
-use piaffe_model::Description;
 
 /// One instant of a half step. Positions are from the stance foot, world axes, m.
 pub struct Sample<'a> {
@@ -20,8 +19,8 @@ pub struct Sample<'a> {
 
 impl<'a> Sample<'a> {
     /// What was seen at a share of a half step.
-    pub fn of(glance: &'a Glance, d: &Description, share: f64) -> Sample<'a> {
-        let [platform, swing] = glance.places(d);
+    pub fn of(glance: &'a Glance, share: f64) -> Sample<'a> {
+        let [platform, swing] = glance.places();
         let state = [&glance.state.q[..], &glance.state.qd, &glance.qdd];
         Sample { share, state, quantities: &glance.values, platform, swing }
     }
@@ -31,14 +30,14 @@ impl Cycle<'_> {
     /// Node `node` of a half step.
     pub fn sample(&self, phase: usize, node: usize) -> Sample<'_> {
         let (p, d) = (&self.phases[phase], self.description());
-        let nc = d.positions();
-        let placement = p.instants.placement(d, node);
+        let [platform, swing] =
+            [p.shapes.placement.p, p.shapes.placement.swing].map(|b| b.of(p.instants.placement(node)));
         Sample {
             share: p.mesh.nodes[node].0,
             state: p.instants.state(d, node),
             quantities: p.instants.row(node),
-            platform: &placement[..nc],
-            swing: &placement[nc..2 * nc],
+            platform,
+            swing,
         }
     }
 

@@ -22,14 +22,15 @@ impl Equations {
     pub fn new(whole: &dyn Whole, posture: &Posture, length: f64) -> Equations {
         let d = whole.description();
         let (n, c) = (d.speeds(), d.reactions());
-        let mut out = vec![0.0; n * n + n];
+        let (equations, places) = (&d.shapes.inertia_and_bias, &d.shapes.feet);
+        let mut out = equations.zeros();
         whole.inertia_and_bias(&posture.up(), &posture.omega(), &posture.q, posture.rates(), &mut out);
-        let mut feet = vec![0.0; c + n * c];
+        let mut feet = places.zeros();
         whole.feet(&posture.q, &mut feet);
         Equations {
-            inertia: DMatrix::from_row_slice(n, n, &out[..n * n]),
-            bias: DVector::from_column_slice(&out[n * n..]),
-            feet: DMatrix::from_row_slice(n, c, &feet[c..]),
+            inertia: DMatrix::from_row_slice(n, n, equations.a.of(&out)),
+            bias: DVector::from_column_slice(equations.h.of(&out)),
+            feet: DMatrix::from_row_slice(n, c, places.jacobian.of(&feet)),
             length,
         }
     }

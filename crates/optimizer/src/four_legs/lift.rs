@@ -184,18 +184,19 @@ impl Legs<'_> {
     /// If the cone program is not solved.
     pub fn impact(&self, gait: &dyn Gait, m: &Moment) -> Result<Impact, NotLifted> {
         let d = self.description;
-        let (nc, n) = (d.positions(), d.positions() + d.orientations());
+        let (nc, shape) = (d.positions(), &gait.description().shapes.impact);
         let posture = self.posture(m);
         let equations = Equations::new(self.whole, &posture, d.leg_length());
         let virtual_leg = 1 - m.stance;
         let landing: Vec<usize> = self.members(virtual_leg).collect();
         let before = [&m.platform[1][..nc], &m.qd].concat();
-        let mut out = vec![0.0; n + nc];
+        let mut out = shape.zeros();
         gait.impact(virtual_leg, &m.q, &before, &mut out);
-        let change: Vec<f64> = out.iter().zip(&before).map(|(after, before)| after - before).collect();
+        let change: Vec<f64> =
+            shape.xd_plus.of(&out).iter().zip(&before).map(|(after, before)| after - before).collect();
         let (mut platform, mut impulse) = ([0.0; 3], [0.0; 3]);
         platform[..nc].copy_from_slice(&change[..nc]);
-        impulse[..nc].copy_from_slice(&out[n..]);
+        impulse[..nc].copy_from_slice(shape.impulse.of(&out));
         let change = self.speeds(&posture.axes, platform, &change[nc..]);
 
         // No joint takes an impulse: all equations are the feet's alone.

@@ -4,9 +4,8 @@ use super::Instants;
 use crate::stance::{Layout, Stance};
 use piaffe_model::Description;
 
-/// Row `r` of a Jacobian in (q, q̇, q̈), by parts.
-pub(super) fn parts(jacobian: &[f64], r: usize, nq: usize) -> [&[f64]; 3] {
-    let row = &jacobian[r * 3 * nq..][..3 * nq];
+/// Derivatives in (q, q̇, q̈), by parts.
+pub(super) fn parts(row: &[f64], nq: usize) -> [&[f64]; 3] {
     [&row[..nq], &row[nq..2 * nq], &row[2 * nq..]]
 }
 

@@ -1,14 +1,15 @@
 //! A look at an instant between the nodes.
 
 use super::Quantities;
-use super::quantities::{heights_length, placement_length, sharing_length};
 use crate::stance::{Mesh, Stance, State, Undefined};
-use piaffe_model::{Description, Gait};
+use piaffe_model::shape::Shapes;
+use piaffe_model::{Description, Gait, UP};
 
 /// One instant between the nodes: the same quantities, without derivatives.
 #[derive(Clone, Debug)]
 pub struct Glance {
     quantities: Quantities,
+    shapes: &'static Shapes,
     pub state: State,
     pub qdd: Vec<f64>,
     /// Of all quantities.
@@ -23,17 +24,17 @@ impl Glance {
     /// At half steps on `leg`.
     pub fn new(d: &Description, leg: usize) -> Glance {
         let quantities = Quantities::new(d);
-        let (nq, nj, nc) = (d.orientations(), d.joints(), d.positions());
-        let z = |count: usize| vec![0.0; count];
+        let shapes = d.shapes;
         Glance {
             quantities,
+            shapes,
             state: State::new(d, leg),
-            qdd: z(nq),
-            values: z(quantities.len()),
-            inverse: z(nq + nj + 2 * nc),
-            placement: z(placement_length(nq, nc)),
-            heights: z(heights_length(nq, quantities.heights().len())),
-            sharing: z(sharing_length(nq, quantities.shared)),
+            qdd: vec![0.0; d.orientations()],
+            values: vec![0.0; quantities.len()],
+            inverse: shapes.inverse.zeros(),
+            placement: shapes.placement.zeros(),
+            heights: shapes.heights.zeros(),
+            sharing: quantities.sharing(shapes).zeros(),
         }
     }
 
@@ -50,28 +51,27 @@ impl Glance {
         parameters: &[f64],
         s: f64,
     ) -> Result<(), Undefined> {
-        let (d, y) = (gait.description(), self.quantities);
-        let (nq, nc) = (d.orientations(), d.positions());
+        let (y, shapes) = (self.quantities, self.shapes);
         stance.at(gait, leg, mesh, parameters, s, &mut self.state)?;
         let State { q, qd, prescribed: [.., accelerations], .. } = &self.state;
         gait.inverse(leg, q, qd, accelerations, &mut self.inverse);
-        let (xdd, forces) = self.inverse.split_at(nc + nq);
-        self.qdd.copy_from_slice(&xdd[nc..]);
+        let shape = &shapes.inverse;
+        let [xdd, torques, force] = [shape.xdd, shape.gamma, shape.f].map(|block| block.of(&self.inverse));
+        self.qdd.copy_from_slice(&xdd[xdd.len() - q.len()..]);
         gait.placement(leg, q, &mut self.placement);
-        y.write(&mut self.values, q, qd, forces, self.placement[1]);
-        self.values[y.clearance()] = self.placement[nc + 1] / (4.0 * s * (1.0 - s));
+        y.write(&mut self.values, [q, qd], [torques, force], shapes.placement.p.of(&self.placement)[UP]);
+        self.values[y.clearance()] = shapes.placement.swing.of(&self.placement)[UP] / (4.0 * s * (1.0 - s));
         gait.heights(leg, q, &mut self.heights);
-        self.values[y.heights()].copy_from_slice(&self.heights[..y.heights().len()]);
+        self.values[y.heights()].copy_from_slice(shapes.heights.heights.of(&self.heights));
         if y.shared > 0 {
             gait.sharing(leg, q, qd, &self.qdd, &mut self.sharing);
-            self.values[y.shared()].copy_from_slice(&self.sharing[..y.shared]);
+            y.write_shared(&mut self.values, shapes, &self.sharing);
         }
         Ok(())
     }
 
     /// Positions of the platform's mass centre and of the swing foot, from the stance foot, m.
-    pub fn places(&self, d: &Description) -> [&[f64]; 2] {
-        let nc = d.positions();
-        [&self.placement[..nc], &self.placement[nc..2 * nc]]
+    pub fn places(&self) -> [&[f64]; 2] {
+        [self.shapes.placement.p, self.shapes.placement.swing].map(|block| block.of(&self.placement))
     }
 }

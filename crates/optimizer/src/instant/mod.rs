@@ -12,13 +12,14 @@ pub use quantities::{Quantities, Shared, direction};
 
 use crate::stance::{Layout, Mesh, Stance, basis_derivatives};
 use chain::{Chain, parts};
-use piaffe_model::{Description, Gait};
-use quantities::{heights_length, inverse_length, placement_length, sharing_length};
+use piaffe_model::shape::Shapes;
+use piaffe_model::{Description, FORWARD, Gait, UP};
 
 /// The quantities at all nodes of a half step: values, and derivatives of the last linearization.
 #[derive(Clone, Debug)]
 pub struct Instants {
     pub quantities: Quantities,
+    shapes: &'static Shapes,
     layout: Layout,
     /// One row of quantities per node.
     pub values: Vec<f64>,
@@ -44,18 +45,19 @@ impl Instants {
     pub fn new(description: &Description, mesh: &Mesh) -> Instants {
         let quantities = Quantities::new(description);
         let layout = Layout::new(description, &mesh.basis);
-        let (nq, nj, nc) = (description.orientations(), description.joints(), description.positions());
+        let (nq, shapes) = (description.orientations(), description.shapes);
         let n = mesh.nodes.len();
         Instants {
             quantities,
+            shapes,
             layout,
             values: vec![0.0; n * quantities.len()],
             states: vec![0.0; n * 3 * nq],
-            inverse: vec![0.0; n * inverse_length(nq, nj, nc)],
-            placement: vec![0.0; n * placement_length(nq, nc)],
-            swing: [vec![0.0; nc + nc * 2 * nq], vec![0.0; nc + nc * 2 * nq]],
-            heights: vec![0.0; n * heights_length(nq, quantities.heights().len())],
-            sharing: vec![0.0; n * sharing_length(nq, quantities.shared)],
+            inverse: vec![0.0; n * shapes.inverse_jacobian.len],
+            placement: vec![0.0; n * shapes.placement.len],
+            swing: [shapes.swing_velocity.zeros(), shapes.swing_velocity.zeros()],
+            heights: vec![0.0; n * shapes.heights.len],
+            sharing: vec![0.0; n * quantities.sharing(shapes).len],
             gradients: vec![0.0; n * quantities.len() * layout.len()],
             betadd_p: vec![0.0; n * layout.len()],
             basis: vec![[0.0; 3]; n * layout.per_joint],
@@ -95,33 +97,39 @@ impl Instants {
     }
 
     /// Position of the platform's mass centre from the stance foot at a node, m.
-    pub fn platform(&self, description: &Description, node: usize) -> &[f64] {
-        &self.placement(description, node)[..description.positions()]
+    pub fn platform(&self, node: usize) -> &[f64] {
+        self.shapes.placement.p.of(self.placement(node))
     }
 
     /// Result of the `placement` kernel at a node.
-    pub fn placement(&self, d: &Description, node: usize) -> &[f64] {
-        let length = placement_length(d.orientations(), d.positions());
-        &self.placement[node * length..][..length]
+    pub fn placement(&self, node: usize) -> &[f64] {
+        result(&self.placement, self.shapes.placement.len, node)
     }
 
-    /// Jacobian of the `inverse_jacobian` kernel at a node: rows Γ, F, balance; columns q, q̇, q̈.
-    pub fn jacobian(&self, d: &Description, node: usize) -> &[f64] {
-        let (nq, nj, nc) = (d.orientations(), d.joints(), d.positions());
-        &self.inverse[node * inverse_length(nq, nj, nc)..][1 + nj + nc..][..(nj + nc + 1) * 3 * nq]
+    /// ∂/∂(q, q̇, q̈) of torques, then the reaction at a node.
+    pub fn forces(&self, node: usize) -> impl Iterator<Item = &[f64]> {
+        let shape = &self.shapes.inverse_jacobian;
+        let inverse = result(&self.inverse, shape.len, node);
+        shape.gamma_w.each(inverse).chain(shape.f_w.each(inverse))
     }
 
-    /// Jacobian of the `heights` kernel at a node: a row per point; columns q.
-    pub fn heights(&self, d: &Description, node: usize) -> &[f64] {
-        let points = self.quantities.heights().len();
-        let length = heights_length(d.orientations(), points);
-        &self.heights[node * length..][..length][points..]
+    /// ∂/∂(q, q̇, q̈) of the balance (eq. 10) at a node.
+    pub fn balance(&self, node: usize) -> &[f64] {
+        let shape = &self.shapes.inverse_jacobian;
+        shape.balance_w.of(result(&self.inverse, shape.len, node))
     }
 
-    /// Jacobian of the `sharing` kernel at a node: rows moment, levers; columns q, q̇, q̈. Empty if nothing shared is looked at.
-    pub fn sharing(&self, d: &Description, node: usize) -> &[f64] {
-        let length = sharing_length(d.orientations(), self.quantities.shared);
-        &self.sharing[node * length..][..length][self.quantities.shared..]
+    /// ∂/∂q of the heights at a node, point by point.
+    pub fn heights(&self, node: usize) -> impl Iterator<Item = &[f64]> {
+        let shape = &self.shapes.heights;
+        shape.heights_q.each(result(&self.heights, shape.len, node))
+    }
+
+    /// ∂/∂(q, q̇, q̈) of what real legs share at a node: moment, then levers. None if nothing shared is looked at.
+    pub fn sharing(&self, node: usize) -> impl Iterator<Item = &[f64]> {
+        let shape = self.quantities.sharing(self.shapes);
+        let sharing = result(&self.sharing, shape.len, node);
+        shape.moment_w.each(sharing).chain(shape.levers_w.each(sharing))
     }
 
     /// Result of the `swing_velocity` kernel at the first (0) or last (1) node.
@@ -132,16 +140,16 @@ impl Instants {
     /// Evaluates all quantities; `stance` must have been integrated.
     pub fn evaluate(&mut self, gait: &dyn Gait, leg: usize, mesh: &Mesh, stance: &Stance, parameters: &[f64]) {
         let d = gait.description();
-        let (nq, nj, nc) = (d.orientations(), d.joints(), d.positions());
+        let (nq, s) = (d.orientations(), self.shapes);
         let t = parameters[self.layout.duration()];
         let last = mesh.nodes.len() - 1;
         let y = self.quantities;
-        let inverse_rows = self.inverse.chunks_mut(inverse_length(nq, nj, nc));
-        let placement_rows = self.placement.chunks_mut(placement_length(nq, nc));
+        let inverse_rows = self.inverse.chunks_mut(s.inverse_jacobian.len);
+        let placement_rows = self.placement.chunks_mut(s.placement.len);
         let value_rows = self.values.chunks_mut(y.len());
         let rows = self.states.chunks_mut(3 * nq).zip(inverse_rows).zip(placement_rows).zip(value_rows);
         for (k, (((state, inverse), placement), values)) in rows.enumerate() {
-            let s = mesh.nodes[k].0;
+            let share = mesh.nodes[k].0;
             let [prescribed, rates, accelerations] = stance.prescribed.at(k);
             let (q, rest) = state.split_at_mut(nq);
             let (qd, qdd) = rest.split_at_mut(nq);
@@ -151,32 +159,34 @@ impl Instants {
             }
             (q[d.unactuated], qd[d.unactuated]) = (stance.beta[k], stance.betad[k]);
             gait.inverse_jacobian(leg, q, qd, accelerations, inverse);
-            qdd[d.unactuated] = inverse[0];
+            let ([torques, force], betadd) = {
+                let shape = &s.inverse_jacobian;
+                ([shape.gamma.of(inverse), shape.f.of(inverse)], shape.beta_dd.value(inverse))
+            };
+            qdd[d.unactuated] = betadd;
             gait.placement(leg, q, placement);
-            y.write(values, q, qd, &inverse[1..1 + nj + nc], placement[1]);
+            y.write(values, [q, qd], [torques, force], s.placement.p.of(placement)[UP]);
             values[y.clearance()] = if k == 0 || k == last {
                 let end = usize::from(k == last);
                 gait.swing_velocity(leg, q, qd, &mut self.swing[end]);
-                direction(end) * self.swing[end][1] * t
+                direction(end) * s.swing_velocity.v.of(&self.swing[end])[UP] * t
             } else {
-                placement[nc + 1] / (4.0 * s * (1.0 - s))
+                s.placement.swing.of(placement)[UP] / (4.0 * share * (1.0 - share))
             };
-            let length = heights_length(nq, y.heights().len());
-            let heights = &mut self.heights[k * length..][..length];
+            let heights = &mut self.heights[k * s.heights.len..][..s.heights.len];
             gait.heights(leg, q, heights);
-            values[y.heights()].copy_from_slice(&heights[..y.heights().len()]);
+            values[y.heights()].copy_from_slice(s.heights.heights.of(heights));
             if y.shared > 0 {
-                let length = sharing_length(nq, y.shared);
-                let sharing = &mut self.sharing[k * length..][..length];
+                let sharing = &mut self.sharing[k * s.sharing.len..][..s.sharing.len];
                 gait.sharing(leg, q, qd, qdd, sharing);
-                values[y.shared()].copy_from_slice(&sharing[..y.shared]);
+                y.write_shared(values, s, sharing);
             }
         }
     }
 
     /// Gradients of all quantities; `stance` must have been differentiated.
     pub fn differentiate(&mut self, d: &Description, mesh: &Mesh, stance: &Stance, parameters: &[f64]) {
-        let (nq, nj, nc, np) = (d.orientations(), d.joints(), d.positions(), self.layout.len());
+        let (nq, nj, np, s) = (d.orientations(), d.joints(), self.layout.len(), self.shapes);
         let (y, layout) = (self.quantities, self.layout);
         let t = parameters[layout.duration()];
         let last = mesh.nodes.len() - 1;
@@ -185,18 +195,16 @@ impl Instants {
         for k in 0..mesh.nodes.len() {
             self.tabulate(mesh, parameters, k);
             let chain = Chain::new(self, d, stance, k);
-            let jacobian = self.jacobian(d, k);
-            let row = |r: usize| parts(jacobian, r, nq);
             // β̈ follows from the balance (eq. 10): its row tells how.
             let betadd_p = &mut betadd[k * np..(k + 1) * np];
-            let balance = row(nj + nc);
+            let balance = parts(self.balance(k), nq);
             chain.row(balance, None, betadd_p);
             let over_f1 = -1.0 / balance[2][d.unactuated];
             betadd_p.iter_mut().for_each(|x| *x *= over_f1);
 
             let block = &mut gradients[k * y.len() * np..(k + 1) * y.len() * np];
-            for (r, out) in block.chunks_mut(np).take(nj + nc).enumerate() {
-                chain.row(row(r), Some(betadd_p), out);
+            for (row, out) in self.forces(k).zip(block.chunks_mut(np)) {
+                chain.row(parts(row, nq), Some(betadd_p), out);
             }
             for (j, out) in block[y.angle(0) * np..].chunks_mut(np).take(nj).enumerate() {
                 chain.coordinate(j, 0, out);
@@ -204,28 +212,28 @@ impl Instants {
             for (j, out) in block[y.rate(0) * np..].chunks_mut(np).take(nj).enumerate() {
                 chain.coordinate(j, 1, out);
             }
-            let row = &self.placement(d, k)[2 * nc + nq..][..nq];
+            let row = s.placement.p_q.row(self.placement(k), UP);
             chain.row([row, &[], &[]], None, &mut block[y.height() * np..][..np]);
             let heights = block[y.heights().start * np..y.heights().end * np].chunks_mut(np);
-            for (row, out) in self.heights(d, k).chunks(nq).zip(heights) {
+            for (row, out) in self.heights(k).zip(heights) {
                 chain.row([row, &[], &[]], None, out);
             }
-            for (r, out) in block[y.shared().start * np..].chunks_mut(np).enumerate() {
-                chain.row(parts(self.sharing(d, k), r, nq), Some(betadd_p), out);
+            for (row, out) in self.sharing(k).zip(block[y.shared().start * np..].chunks_mut(np)) {
+                chain.row(parts(row, nq), Some(betadd_p), out);
             }
             let out = &mut block[y.clearance() * np..][..np];
             if k == 0 || k == last {
                 let end = usize::from(k == last);
                 let swing = &self.swing[end];
-                let row = &swing[nc + 2 * nq..][..2 * nq];
+                let row = s.swing_velocity.v_w.row(swing, UP);
                 chain.row([&row[..nq], &row[nq..], &[]], None, out);
                 out.iter_mut().for_each(|x| *x *= direction(end) * t);
-                out[layout.duration()] += direction(end) * swing[1];
+                out[layout.duration()] += direction(end) * s.swing_velocity.v.of(swing)[UP];
             } else {
-                let s = mesh.nodes[k].0;
-                let row = &self.placement(d, k)[2 * nc + nc * nq + nq..][..nq];
+                let share = mesh.nodes[k].0;
+                let row = s.placement.swing_q.row(self.placement(k), UP);
                 chain.row([row, &[], &[]], None, out);
-                out.iter_mut().for_each(|x| *x /= 4.0 * s * (1.0 - s));
+                out.iter_mut().for_each(|x| *x /= 4.0 * share * (1.0 - share));
             }
         }
         self.gradients = gradients;
@@ -244,8 +252,13 @@ impl Instants {
 
     /// Gradient of the platform's x at a node, in the local parameters; after `differentiate`.
     pub fn platform_x_gradient(&self, d: &Description, stance: &Stance, node: usize, out: &mut [f64]) {
-        let (nq, nc) = (d.orientations(), d.positions());
-        let row = &self.placement(d, node)[2 * nc..][..nq];
+        let row = self.shapes.placement.p_q.row(self.placement(node), FORWARD);
         Chain::new(self, d, stance, node).row([row, &[], &[]], None, out);
     }
+}
+
+/// A kernel's numbers at a node, in a table of them.
+#[inline]
+fn result(table: &[f64], length: usize, node: usize) -> &[f64] {
+    &table[node * length..][..length]
 }

@@ -2,6 +2,7 @@
 
 use crate::constraints::sharing;
 use piaffe_model::Description;
+use piaffe_model::shape::{Shapes, Sharing, SharingCurvatureWeights};
 
 /// Where each quantity stands.
 #[derive(Clone, Copy, Debug)]
@@ -65,12 +66,26 @@ impl Quantities {
     }
 
     /// Writes what follows from the state itself, and torques and reaction.
-    pub(super) fn write(&self, values: &mut [f64], q: &[f64], qd: &[f64], forces: &[f64], height: f64) {
+    pub(super) fn write(&self, values: &mut [f64], [q, qd]: [&[f64]; 2], [torques, force]: [&[f64]; 2], height: f64) {
         let nj = self.joints;
-        values[..nj + self.components].copy_from_slice(forces);
+        values[self.torque(0)..][..nj].copy_from_slice(torques);
+        values[self.force(0)..][..self.components].copy_from_slice(force);
         values[self.angle(0)..][..nj].copy_from_slice(&q[..nj]);
         values[self.rate(0)..][..nj].copy_from_slice(&qd[..nj]);
         values[self.height()] = height;
+    }
+
+    /// Writes what the kernel `sharing` gives.
+    pub(super) fn write_shared(&self, values: &mut [f64], shapes: &Shapes, sharing: &[f64]) {
+        let (from, to) = (&shapes.sharing, &shapes.sharing_curvature.weights);
+        let own = &mut values[self.shared()];
+        to.moment.of_mut(own).copy_from_slice(from.moment.of(sharing));
+        to.levers.of_mut(own).copy_from_slice(from.levers.of(sharing));
+    }
+
+    /// The shape of what the kernel `sharing` gives: nothing if it is not looked at.
+    pub(super) fn sharing(&self, shapes: &Shapes) -> Sharing {
+        if self.shared > 0 { shapes.sharing } else { Sharing::NONE }
     }
 
     pub fn len(&self) -> usize {
@@ -82,55 +97,37 @@ impl Quantities {
     }
 }
 
-/// Order of what the kernel `sharing` gives.
+/// Order of what the kernel `sharing` gives, as of its weights.
 #[derive(Clone, Copy, Debug)]
 pub struct Shared {
-    joints: usize,
+    shape: SharingCurvatureWeights,
 }
 
 impl Shared {
     pub fn new(description: &Description) -> Shared {
-        let leg = &description.legs[0];
-        Shared { joints: leg.end_joint - leg.first_joint }
+        Shared { shape: description.shapes.sharing_curvature.weights }
     }
 
     /// Moment about the vertical (0) or the transverse axis (1).
     pub fn moment(self, axis: usize) -> usize {
-        axis
+        self.shape.moment.place(axis)
     }
 
     /// Component of ∂foot/∂q for a joint of the leg in support.
     pub fn lever(self, joint: usize, component: usize) -> usize {
-        2 + 3 * joint + component
+        self.shape.levers.index(joint, component)
     }
 
     pub fn len(self) -> usize {
-        self.lever(self.joints, 0)
+        self.shape.len
     }
 
     pub fn is_empty(self) -> bool {
-        false
+        self.len() == 0
     }
 }
 
 /// Sign and factor that turn the swing foot's vertical velocity into clearance: up first, down last.
 pub fn direction(end: usize) -> f64 {
     if end == 0 { 0.25 } else { -0.25 }
-}
-
-pub(super) fn inverse_length(nq: usize, nj: usize, nc: usize) -> usize {
-    1 + nj + nc + (nj + nc + 1) * 3 * nq
-}
-
-pub(super) fn sharing_length(nq: usize, shared: usize) -> usize {
-    shared + shared * 3 * nq
-}
-
-/// Of the kernel `heights` for so many points.
-pub(super) fn heights_length(nq: usize, points: usize) -> usize {
-    points + points * nq
-}
-
-pub(super) fn placement_length(nq: usize, nc: usize) -> usize {
-    2 * nc + 2 * nc * nq
 }

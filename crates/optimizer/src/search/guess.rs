@@ -7,7 +7,7 @@
 use nalgebra::{DMatrix, DVector};
 use piaffe_model::motion::{HalfStep, Motion};
 use piaffe_model::units::Units;
-use piaffe_model::{Description, Gait, HalfSteps, Rotation};
+use piaffe_model::{Description, FORWARD, Gait, HalfSteps, Rotation, UP};
 use std::f64::consts::FRAC_PI_2;
 
 /// What distinguishes one start from another.
@@ -174,27 +174,28 @@ fn place(gait: &dyn Gait, plan: &Plan, k: usize, durations: &[f64], travel: f64,
 fn reach(gait: &dyn Gait, plan: &Plan) -> f64 {
     let d = gait.description();
     let level = nominal_posture(d, &Plan { pitch: 0.0, ..plan.clone() });
-    let mut out = vec![0.0; 2 * d.positions() * (1 + d.orientations())];
+    let (shape, mut out) = (&d.shapes.placement, d.shapes.placement.zeros());
     gait.placement(0, &level, &mut out);
     let hip = d.bodies.iter().find(|b| b.parent == Some(0) && b.coordinate == Some(d.legs[0].first_joint));
     let [x, y, _] = hip.map_or([0.0; 3], |b| b.offset);
-    (out[0] + x).hypot(out[1] + y)
+    let platform = shape.p.of(&out);
+    (platform[FORWARD] + x).hypot(platform[UP] + y)
 }
 
 /// Height of the platform's mass centre with all joints at zero, m.
 fn standing_height(gait: &dyn Gait) -> f64 {
     let d = gait.description();
-    let mut out = vec![0.0; 2 * d.positions() * (1 + d.orientations())];
+    let (shape, mut out) = (&d.shapes.placement, d.shapes.placement.zeros());
     gait.placement(0, &vec![0.0; d.orientations()], &mut out);
-    out[1]
+    shape.p.of(&out)[UP]
 }
 
 /// Forward distance from foot 1 to foot 2 with all joints at zero, m.
 fn foot_spread(gait: &dyn Gait) -> f64 {
     let d = gait.description();
-    let mut out = vec![0.0; 2 * d.positions() * (1 + d.orientations())];
+    let (shape, mut out) = (&d.shapes.placement, d.shapes.placement.zeros());
     gait.placement(0, &vec![0.0; d.orientations()], &mut out);
-    out[d.positions()]
+    shape.swing.of(&out)[FORWARD]
 }
 
 /// Configuration that places platform and swing foot, near a posture: damped least squares.
@@ -203,10 +204,9 @@ fn inverse_kinematics(gait: &dyn Gait, leg: usize, target: &Target, near: &[f64]
     const POSTURE: f64 = 3e-3;
     let d = gait.description();
     let leg_length = d.leg_length();
-    let (nq, nc) = (d.orientations(), d.positions());
-    let mut out = vec![0.0; 2 * nc + 2 * nc * nq];
-    let wanted = [target.platform[0], target.platform[1], target.swing[0], target.swing[1]];
-    let rows = [0, 1, nc, nc + 1];
+    let nq = d.orientations();
+    let (shape, mut out) = (&d.shapes.placement, d.shapes.placement.zeros());
+    let wanted = [(shape.p, shape.p_q, target.platform), (shape.swing, shape.swing_q, target.swing)];
     let mut q = DVector::from_column_slice(near);
     for _ in 0..60 {
         gait.placement(leg, q.as_slice(), &mut out);
@@ -215,9 +215,12 @@ fn inverse_kinematics(gait: &dyn Gait, leg: usize, target: &Target, near: &[f64]
         for (i, n) in near.iter().enumerate() {
             right[i] = POSTURE * POSTURE * (n - q[i]);
         }
-        for (row, wanted) in rows.iter().zip(&wanted) {
-            let gradient: Vec<f64> = out[2 * nc + row * nq..][..nq].iter().map(|g| g / leg_length).collect();
-            let error = (wanted - out[*row]) / leg_length;
+        let rows = wanted
+            .iter()
+            .flat_map(|(place, by_q, to)| [FORWARD, UP].map(|k| (place.place(k), by_q.row(&out, k), to[k])));
+        for (place, row, wanted) in rows {
+            let gradient: Vec<f64> = row.iter().map(|g| g / leg_length).collect();
+            let error = (wanted - out[place]) / leg_length;
             for i in 0..nq {
                 right[i] += gradient[i] * error;
                 for j in 0..nq {

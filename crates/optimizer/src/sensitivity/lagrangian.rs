@@ -192,11 +192,12 @@ impl<'a> Slopes<'a> {
     fn momentum_at_end(&self, k: usize) -> [f64; 2] {
         let (d, h) = (self.d, &self.motion.half_steps[k]);
         let nq = d.orientations();
-        let mut momentum = vec![0.0; 1 + 2 * nq];
+        let mut momentum = d.shapes.momentum.zeros();
         let (q, qd) = (d.complete(&h.q_final, h.beta_final), d.complete(&h.qd_final, h.betad_final));
         let cycle = &self.linearized.cycle;
         cycle.gait().momentum(cycle.stance_leg(k), &q, &qd, &mut momentum);
-        [momentum[1 + d.unactuated], momentum[1 + nq + d.unactuated]]
+        let by_w = d.shapes.momentum.sigma_w.of(&momentum);
+        [by_w[d.unactuated], by_w[nq + d.unactuated]]
     }
 }
 

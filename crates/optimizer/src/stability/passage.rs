@@ -2,8 +2,8 @@
 
 use crate::cycle::{elements, renamed, stance_leg};
 use crate::stance::{self, Layout, Mesh, Stance, Undefined};
-use piaffe_model::Gait;
 use piaffe_model::motion::{HalfStep, Motion};
+use piaffe_model::{Gait, UP};
 use piaffe_sqp::dot;
 
 /// Intervals per half step at whose ends the motion is looked at.
@@ -130,14 +130,13 @@ fn parameters(gait: &dyn Gait, h: &HalfStep, leg: usize, layout: &Layout) -> Vec
 impl Landing {
     fn new(gait: &dyn Gait, leg: usize, state: State, betad: [f64; 2]) -> Landing {
         let d = gait.description();
-        let (nq, nc) = (d.orientations(), d.positions());
-        let mut placement = vec![0.0; 2 * nc + 2 * nc * nq];
+        let mut placement = d.shapes.placement.zeros();
         gait.placement(leg, &state.q, &mut placement);
-        let mut touchdown = vec![0.0; nq + nc + 2 + (nq + nc + 2) * 2 * nq];
+        let mut touchdown = d.shapes.touchdown.zeros();
         gait.touchdown(1 - leg, &state.q, &state.qd, &mut touchdown);
         Landing {
-            height: placement[2 * nc + nc * nq + nq..][..nq].to_vec(),
-            impact: touchdown[nq + nc + 2..][..2 * nq * nq].to_vec(),
+            height: d.shapes.placement.swing_q.row(&placement, UP).to_vec(),
+            impact: d.shapes.touchdown.qd_plus_w.of(&touchdown).to_vec(),
             state,
             betad,
         }
@@ -158,14 +157,19 @@ impl Landing {
 impl Start {
     fn new(gait: &dyn Gait, h: &HalfStep, leg: usize) -> Start {
         let d = gait.description();
-        let nq = d.orientations();
         let (q, qd) = (d.complete(&h.q_initial, h.beta_initial), d.complete(&h.qd_initial, h.betad_initial));
-        let mut momentum = vec![0.0; 1 + 2 * nq];
+        let mut momentum = d.shapes.momentum.zeros();
         gait.momentum(leg, &q, &qd, &mut momentum);
-        let mut terms = [0.0; 5];
+        let mut terms = d.shapes.momentum_terms.zeros();
         gait.momentum_terms(leg, &q, &qd, &mut terms);
-        let (by_q, by_qd) = (momentum[1..1 + nq].to_vec(), momentum[1 + nq..].to_vec());
-        Start { qd, sigma: momentum[0], sigmad: terms[4], by_q, by_qd }
+        let (by_q, by_qd) = d.shapes.momentum.sigma_w.of(&momentum).split_at(q.len());
+        Start {
+            qd,
+            sigma: d.shapes.momentum.sigma.value(&momentum),
+            sigmad: d.shapes.momentum_terms.sigmadot.value(&terms),
+            by_q: by_q.to_vec(),
+            by_qd: by_qd.to_vec(),
+        }
     }
 }
 
@@ -181,8 +185,7 @@ pub fn with_next_names(gait: &dyn Gait, values: &[f64]) -> Vec<f64> {
 /// q̈, with β̈ by eq. 10.
 fn acceleration(gait: &dyn Gait, leg: usize, at: &stance::State) -> Vec<f64> {
     let d = gait.description();
-    let (nc, nq) = (d.positions(), d.orientations());
-    let mut inverse = vec![0.0; 2 * nc + nq + d.joints()];
+    let mut inverse = d.shapes.inverse.zeros();
     gait.inverse(leg, &at.q, &at.qd, &at.prescribed[2], &mut inverse);
-    inverse[nc..nc + nq].to_vec()
+    d.shapes.inverse.xdd.of(&inverse)[d.positions()..].to_vec()
 }

@@ -19,7 +19,7 @@
 
 use super::halving;
 use super::passage::{Instant, Passage};
-use piaffe_model::{Gait, Rotation};
+use piaffe_model::{FORWARD, Gait, Rotation, UP};
 use serde::{Deserialize, Serialize};
 
 /// The return map of the speed along the path, or why there is none.
@@ -120,12 +120,11 @@ fn phase(gait: &dyn Gait, passages: &[Passage]) -> Option<String> {
 /// Platform's mass centre from the stance foot and its velocity, forward and up; m, m/s.
 fn platform(gait: &dyn Gait, leg: usize, i: &Instant) -> [[f64; 2]; 2] {
     let d = gait.description();
-    let (nq, nc) = (d.orientations(), d.positions());
-    let mut placement = vec![0.0; 2 * nc + 2 * nc * nq];
+    let mut placement = d.shapes.placement.zeros();
     gait.placement(leg, &i.state.q, &mut placement);
-    let mut velocity = vec![0.0; nc];
+    let mut velocity = vec![0.0; d.positions()];
     gait.platform_velocity(leg, &i.state.q, &i.state.qd, &mut velocity);
-    [[placement[0], placement[1]], [velocity[0], velocity[1]]]
+    [d.shapes.placement.p.of(&placement), &velocity].map(|v| [v[FORWARD], v[UP]])
 }
 
 /// Forward speed of the robot's mass centre, m/s.
@@ -135,7 +134,7 @@ fn mass_centre_speed(gait: &dyn Gait, leg: usize, i: &Instant) -> f64 {
     let whole = |[p, q]: [&[f64]; 2]| [p, q].concat();
     let mut velocity = vec![0.0; nc];
     gait.platform_velocity(leg, &i.state.q, &i.state.qd, &mut velocity);
-    let mut centre = vec![0.0; 2 * nc];
+    let mut centre = d.shapes.centre_of_mass.zeros();
     gait.centre_of_mass(&whole([&vec![0.0; nc], &i.state.q]), &whole([&velocity, &i.state.qd]), &mut centre);
-    centre[nc]
+    d.shapes.centre_of_mass.velocity.of(&centre)[FORWARD]
 }

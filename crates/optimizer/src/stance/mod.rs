@@ -17,6 +17,7 @@ pub use prescribed::{Layout, Prescribed, basis_derivatives};
 pub use system::System;
 
 use crate::lgl::NODES;
+use piaffe_model::shape::LateGradient;
 use piaffe_model::units::Units;
 use piaffe_model::{Description, Gait};
 
@@ -52,6 +53,7 @@ pub struct Stance {
     late: Vec<[f64; 6]>,
     early: Vec<f64>,
     gradient: Vec<f64>,
+    shape: LateGradient,
     pub prescribed: Prescribed,
     early_length: usize,
     layout: Layout,
@@ -87,7 +89,8 @@ impl Stance {
             moment_p: table(),
             late: vec![[0.0; 6]; n],
             early: vec![0.0; n * early_length],
-            gradient: vec![0.0; 4 * layout.prescribed],
+            gradient: description.shapes.late_gradient.zeros(),
+            shape: description.shapes.late_gradient,
             prescribed: Prescribed::new(layout.prescribed, n),
             early_length,
             layout,
@@ -241,7 +244,7 @@ impl Stance {
     /// Fills the rows of node `k` with ∂(T β̇), ∂(T σ̇) at fixed (β, σ).
     fn explicit(&mut self, gait: &dyn Gait, leg: usize, mesh: &Mesh, k: usize, t: f64) {
         let layout = self.layout;
-        let nt = layout.prescribed;
+        let LateGradient { f1_q, f2_q, f2_qd, moment_q, .. } = self.shape;
         let jet = &mesh.nodes[k].1;
         let early = &self.early[k * self.early_length..][..self.early_length];
         gait.late_gradient(leg, early, self.beta[k], &mut self.gradient);
@@ -252,7 +255,8 @@ impl Stance {
         moment.fill(0.0);
         let (mut rate_t, mut moment_t) = (self.betad[k], self.sigmad[k]);
         for (j, [q_t, qd_t, _]) in self.prescribed.by_duration(k).iter().enumerate() {
-            let [f1_q, f2_q, f2_qd, moment_q] = [0, 1, 2, 3].map(|g| self.gradient[g * nt + j]);
+            let [f1_q, f2_q, f2_qd, moment_q] =
+                [f1_q, f2_q, f2_qd, moment_q].map(|block| self.gradient[block.place(j)]);
             let by_q = -(f2_q + self.betad[k] * f1_q) / f1;
             let by_qd = -f2_qd / f1;
             for i in 0..layout.per_joint {

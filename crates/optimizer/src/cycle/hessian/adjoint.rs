@@ -5,8 +5,8 @@ use crate::cycle::phase::Phase;
 use crate::cycle::problem::CLOSURE;
 use crate::lgl::NODES;
 use crate::stance::{Mesh, Stance};
-use piaffe_model::Description;
 use piaffe_model::units::Units;
+use piaffe_model::{Description, FORWARD, UP};
 
 impl PhaseWork {
     /// Multipliers of the collocation equations, from the last element to the first.
@@ -30,26 +30,25 @@ impl PhaseWork {
 
     /// ∂L/∂β and ∂L/∂β̇ through the quantities of a node, β̈ eliminated; and the balance's multiplier.
     fn direct(&self, d: &Description, p: &Phase, node: usize) -> [f64; 3] {
-        let (nq, nj, nc) = (d.orientations(), d.joints(), d.positions());
+        let (nq, nj) = (d.orientations(), d.joints());
         let y = p.instants.quantities;
         let w = &self.weights[node * y.len()..][..y.len()];
-        let jacobian = p.instants.jacobian(d, node);
-        let entry = |row: usize, order: usize| jacobian[row * 3 * nq + order * nq + d.unactuated];
+        let entry = |row: &[f64], order: usize| row[order * nq + d.unactuated];
         let (mut beta, mut betad, mut betadd) = (0.0, 0.0, 0.0);
-        for (row, weight) in w[..nj + nc].iter().enumerate() {
+        for (row, weight) in p.instants.forces(node).zip(w) {
             beta += weight * entry(row, 0);
             betad += weight * entry(row, 1);
             betadd += weight * entry(row, 2);
         }
-        let sharing = p.instants.sharing(d, node);
-        for (weight, row) in w[y.shared()].iter().zip(sharing.chunks(3 * nq)) {
-            beta += weight * row[d.unactuated];
-            betad += weight * row[nq + d.unactuated];
-            betadd += weight * row[2 * nq + d.unactuated];
+        for (weight, row) in w[y.shared()].iter().zip(p.instants.sharing(node)) {
+            beta += weight * entry(row, 0);
+            betad += weight * entry(row, 1);
+            betadd += weight * entry(row, 2);
         }
-        let balance = -betadd / entry(nj + nc, 2);
-        beta += balance * entry(nj + nc, 0);
-        betad += balance * entry(nj + nc, 1);
+        let row = p.instants.balance(node);
+        let balance = -betadd / entry(row, 2);
+        beta += balance * entry(row, 0);
+        betad += balance * entry(row, 1);
         if d.unactuated < nj {
             beta += w[y.angle(d.unactuated)];
             betad += w[y.rate(d.unactuated)];
@@ -57,15 +56,15 @@ impl PhaseWork {
         let (height, velocity) = self.swing_weights(p, node);
         if velocity != 0.0 {
             let end = usize::from(node == p.last());
-            let row = &p.instants.swing_velocity(end)[nc + 2 * nq..][..2 * nq];
-            beta += velocity * row[d.unactuated];
-            betad += velocity * row[nq + d.unactuated];
+            let row = p.shapes.swing_velocity.v_w.row(p.instants.swing_velocity(end), UP);
+            beta += velocity * entry(row, 0);
+            betad += velocity * entry(row, 1);
         }
-        let placement = p.instants.placement(d, node);
-        beta += height * placement[2 * nc + nc * nq + nq + d.unactuated];
-        beta += self.travel_weight(p, node) * placement[2 * nc + d.unactuated];
-        beta += w[y.height()] * placement[2 * nc + nq + d.unactuated];
-        for (weight, row) in w[y.heights()].iter().zip(p.instants.heights(d, node).chunks(nq)) {
+        let (placement, shape) = (p.instants.placement(node), &p.shapes.placement);
+        beta += height * placement[shape.swing_q.index(UP, d.unactuated)];
+        beta += self.travel_weight(p, node) * placement[shape.p_q.index(FORWARD, d.unactuated)];
+        beta += w[y.height()] * placement[shape.p_q.index(UP, d.unactuated)];
+        for (weight, row) in w[y.heights()].iter().zip(p.instants.heights(node)) {
             beta += weight * row[d.unactuated];
         }
         [beta, betad, balance]

@@ -25,6 +25,7 @@ impl Cycle<'_> {
             sigma_weight,
             0.0,
             &work.zeros,
+            &mut work.others,
             &mut work.kernel,
             &mut work.small,
         );
@@ -34,9 +35,10 @@ impl Cycle<'_> {
         let before = self.before(k);
         let b = &self.phases[before];
         work.xi.fill(0.0);
+        let (_, by_qd) = p.shapes.momentum.sigma_w.of(&p.momentum_start).split_at(nq);
         for row in 0..nq {
             let (from, sign) = renamed(d, row);
-            let mut weight = sigma_weight * p.momentum_start[1 + nq + row];
+            let mut weight = sigma_weight * by_qd[row];
             if row != d.unactuated {
                 let j = if row < d.unactuated { row } else { row - 1 };
                 weight += work.phase.gradient[layout.joint(j, 1)];
@@ -55,8 +57,8 @@ impl Cycle<'_> {
             work.outputs[pitch(d)] -= lambda[self.speed_equation() + 1 + before] / self.units.angular_momentum();
         }
         self.gait.touchdown_curvature(1 - b.leg, &b.q_end, &b.qd_end, &work.xi, &work.outputs, &mut work.touchdown);
-        let (q_q, rest) = work.touchdown.split_at(nq * nq);
-        let (q_qd, q_plus) = rest.split_at(nq * nq);
+        let shape = &p.shapes.touchdown_curvature;
+        let [q_q, q_qd, q_plus] = [shape.q_q, shape.q_qd, shape.q_plus].map(|block| block.of(&work.touchdown));
         let small = &mut work.small;
         small.fill(0.0);
         let size = 2 * nq;
@@ -69,7 +71,7 @@ impl Cycle<'_> {
             for l in 0..nq {
                 let coupling = q_plus[i * nq + l];
                 if coupling != 0.0 {
-                    for (c, jacobian) in b.touchdown_row(d, l).iter().enumerate() {
+                    for (c, jacobian) in b.qd_plus_row(l).iter().enumerate() {
                         small[i * size + c] += coupling * jacobian;
                         small[c * size + i] += coupling * jacobian;
                     }
@@ -80,7 +82,7 @@ impl Cycle<'_> {
             let multiplier = mu[first + c];
             if multiplier != 0.0 {
                 self.impact.curvature(c, &b.impact, |i, j, second| {
-                    let (a, b) = (b.touchdown_row(d, nq + i), b.touchdown_row(d, nq + j));
+                    let (a, b) = (b.impact_row(i), b.impact_row(j));
                     for (r, x) in a.iter().enumerate() {
                         for (s, y) in b.iter().enumerate() {
                             small[r * size + s] -= multiplier * second * x * y;
@@ -102,6 +104,7 @@ impl Cycle<'_> {
             closure,
             -touchdown,
             &work.zeros,
+            &mut work.others,
             &mut work.kernel,
             &mut work.small,
         );
@@ -118,30 +121,32 @@ impl Cycle<'_> {
         sigma: f64,
         height: f64,
         zeros: &[f64],
+        others: &mut [f64],
         kernel: &mut [f64],
         small: &mut [f64],
     ) {
-        let (d, nq) = (self.description(), q.len());
+        let (nq, shape) = (q.len(), &p.shapes.curvature);
         let zero = |count: usize| &zeros[..count];
+        others.fill(0.0);
+        others[shape.others.sigma.place(0)] = sigma;
+        others[shape.others.swing_height.place(0)] = height;
         self.gait.curvature(
             p.leg,
             q,
             qd,
             zero(nq),
-            zero(d.joints() + 1),
-            zero(d.positions()),
-            &[sigma, 0.0, height, 0.0, 0.0, 0.0],
+            zero(shape.n.len),
+            zero(p.shapes.inverse_jacobian.f.len()),
+            others,
             kernel,
         );
-        let blocks = &kernel[3 * nq..];
-        let block = |b: usize, i: usize, j: usize| blocks[b * nq * nq + i * nq + j];
         let size = 2 * nq;
         for i in 0..nq {
             for j in 0..nq {
-                small[i * size + j] = block(0, i, j);
-                small[i * size + nq + j] = block(1, i, j);
-                small[(nq + j) * size + i] = block(1, i, j);
-                small[(nq + i) * size + nq + j] = block(3, i, j);
+                small[i * size + j] = kernel[shape.q_q.index(i, j)];
+                small[i * size + nq + j] = kernel[shape.q_qd.index(i, j)];
+                small[(nq + j) * size + i] = kernel[shape.q_qd.index(i, j)];
+                small[(nq + i) * size + nq + j] = kernel[shape.qd_qd.index(i, j)];
             }
         }
     }

@@ -94,29 +94,35 @@ impl PhaseWork {
         let f1 = p.stance.inertia(node);
         let chi = -(betad_weight + t * omega_beta) / f1;
         let kappa = t * omega_sigma;
-        self.n.fill(0.0);
-        self.n[..nj].copy_from_slice(&w[..nj]);
-        self.n[nj] = balance;
+        let shape = &p.shapes.curvature;
+        shape.n.torque.of_mut(&mut self.n).copy_from_slice(&w[y.torque(0)..][..nj]);
+        self.n[shape.n.balance.place(0)] = balance;
         let (height, velocity) = self.swing_weights(p, node);
-        let others = [chi, kappa, height, self.travel_weight(p, node), velocity, w[y.height()]];
+        self.others[shape.others.sigma.place(0)] = chi;
+        self.others[shape.others.sigmad.place(0)] = kappa;
+        self.others[shape.others.swing_height.place(0)] = height;
+        self.others[shape.others.platform_x.place(0)] = self.travel_weight(p, node);
+        self.others[shape.others.swing_velocity.place(0)] = velocity;
+        self.others[shape.others.platform_height.place(0)] = w[y.height()];
         let [q, qd, qdd] = p.instants.state(d, node);
-        gait.curvature(p.leg, q, qd, qdd, &self.n, &w[y.force(0)..][..nc], &others, &mut self.out);
+        gait.curvature(p.leg, q, qd, qdd, &self.n, &w[y.force(0)..][..nc], &self.others, &mut self.out);
         let heights = &w[y.heights()];
         if heights.iter().any(|w| *w != 0.0) {
             gait.heights_curvature(p.leg, q, heights, &mut self.heights);
-            let (by_q, q_q) = self.heights.split_at(nq);
-            self.out[..nq].iter_mut().zip(by_q).for_each(|(out, x)| *out += x);
-            self.out[3 * nq..].iter_mut().zip(q_q).for_each(|(out, x)| *out += x);
+            let of = &p.shapes.heights_curvature;
+            for (to, from) in [(shape.gradient, of.gradient), (shape.q_q, of.q_q)] {
+                let (to, from) = (to.of_mut(&mut self.out), from.of(&self.heights));
+                to.iter_mut().zip(from).for_each(|(out, x)| *out += x);
+            }
         }
         let shared = &w[y.shared()];
         if shared.iter().any(|w| *w != 0.0) {
             gait.sharing_curvature(p.leg, q, qd, qdd, shared, &mut self.shared);
             self.out.iter_mut().zip(&self.shared).for_each(|(out, shared)| *out += shared);
         }
-        let (gradient, blocks) = self.out.split_at(3 * nq);
-        let (q_q, rest) = blocks.split_at(nq * nq);
-        let (q_qd, rest) = rest.split_at(nq * nq);
-        let (q_qdd, qd_qd) = rest.split_at(nq * nq);
+        let gradient = shape.gradient.of(&self.out);
+        let [q_q, q_qd, q_qdd, qd_qd] =
+            [shape.q_q, shape.q_qd, shape.q_qdd, shape.qd_qd].map(|block| block.of(&self.out));
         // G between all orders of coordinate i and all of coordinate j.
         let g = |i: usize, j: usize| {
             let (ij, ji) = (i * nq + j, j * nq + i);

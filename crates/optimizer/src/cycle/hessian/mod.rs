@@ -39,6 +39,7 @@ pub struct Workspace {
     small: Vec<f64>,
     xi: Vec<f64>,
     outputs: Vec<f64>,
+    others: Vec<f64>,
     kernel: Vec<f64>,
     rows: Vec<f64>,
     /// Weights that are not there: as many as any kernel input needs.
@@ -66,6 +67,7 @@ struct PhaseWork {
     /// Those in (q, q̇, q̈) of what real legs share.
     shared: Vec<f64>,
     n: Vec<f64>,
+    others: Vec<f64>,
     /// One vector of local parameters per unactuated column of G.
     v: [Vec<f64>; 3],
     /// A block of G times each parameter's part in (Q, Q̇, Q̈).
@@ -75,7 +77,7 @@ struct PhaseWork {
 
 impl Workspace {
     pub fn new(d: &Description, variables: &Variables, phase: &Phase) -> Workspace {
-        let (nq, nc, n, np) = (d.orientations(), d.positions(), variables.total(), phase.layout.len());
+        let (nq, n, np, shapes) = (d.orientations(), variables.total(), phase.layout.len(), d.shapes);
         let z = |count: usize| vec![0.0; count];
         Workspace {
             local: z(np),
@@ -86,10 +88,11 @@ impl Workspace {
                 omega: Vec::with_capacity(phase.mesh.nodes.len()),
                 stationarity: Vec::with_capacity(phase.mesh.nodes.len()),
                 direct: Vec::with_capacity(phase.mesh.nodes.len()),
-                out: z(3 * nq + 4 * nq * nq),
-                heights: z(nq + nq * nq),
-                shared: z(3 * nq + 4 * nq * nq),
-                n: z(d.joints() + 1),
+                out: shapes.curvature.zeros(),
+                heights: shapes.heights_curvature.zeros(),
+                shared: shapes.sharing_curvature.zeros(),
+                n: shapes.curvature.n.zeros(),
+                others: shapes.curvature.others.zeros(),
                 v: [z(np), z(np), z(np)],
                 images: vec![[0.0; 3]; phase.layout.per_joint],
                 scratch: z(np),
@@ -97,13 +100,14 @@ impl Workspace {
             reach: z(np),
             h_local: z(np * np),
             half: z(np * n),
-            touchdown: z(3 * nq * nq),
+            touchdown: shapes.touchdown_curvature.zeros(),
             small: z(4 * nq * nq),
             xi: z(nq),
-            outputs: z(phase.impact.len()),
-            kernel: z(3 * nq + 4 * nq * nq),
+            outputs: shapes.touchdown_curvature.outputs.zeros(),
+            others: shapes.curvature.others.zeros(),
+            kernel: shapes.curvature.zeros(),
             rows: z(2 * nq * n),
-            zeros: z(nq + d.joints() + nc + 1),
+            zeros: z(nq.max(shapes.curvature.n.len).max(shapes.inverse_jacobian.f.len())),
         }
     }
 }
