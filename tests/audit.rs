@@ -164,11 +164,16 @@ fn what_cannot_be_checked_is_said_to_be_so() {
     assert_eq!(piaffe(&fast).status.code(), Some(3));
     let infeasible: Value = serde_json::from_slice(&std::fs::read(file).unwrap()).unwrap();
     let (code, statements, words) = audited("infeasible.json", &infeasible);
-    assert!(code == 4 && words.contains("no motion"), "{words}");
-    assert_eq!(
-        entries(&statements, "not-checked").len() + entries(&statements, "not-derivable").len(),
-        statements.len()
-    );
+    assert!(code == 0 && words.contains("states no motion"), "{words}");
+    assert_eq!(entries(&statements, "confirmed"), ["polynomial_order", "robot"]);
+    assert_eq!(entries(&statements, "not-derivable").len() + 2, statements.len());
+    // Without a motion it is no optimum, and costs nothing.
+    for (key, value) in [("status", json!("optimal")), ("cost", json!(12.0)), ("receipt", TROT["receipt"].clone())] {
+        let mut claiming = infeasible.clone();
+        claiming[key] = value;
+        let (code, statements, words) = audited("claiming.json", &claiming);
+        assert!(code == 4 && entries(&statements, "not-confirmed") == [key], "{words}");
+    }
 }
 
 /// Pointers to all numbers in a value.

@@ -176,7 +176,7 @@ enum Command {
     /// motion was found (other optima, times, the search's settings) cannot be seen from it and is passed over. What a sweep
     /// says of its results as a whole must follow from the results beside it, but for what ended a gait.
     #[command(
-        after_help = "Examples:\n  piaffe verify results/*.json\n  piaffe verify trot.json --json -\n  piaffe verify sweep/*.json\n\nThe exit code is 0 only if everything was confirmed."
+        after_help = "Examples:\n  piaffe verify results/*.json\n  piaffe verify trot.json --json -\n  piaffe verify sweep/*.json\n\nThe exit code is 0 only if everything was confirmed that is stated about motions."
     )]
     Verify {
         /// Results as JSON, overviews of sweeps (`sweep.json`), or folders of them; `-` reads standard input.

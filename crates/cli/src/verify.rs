@@ -80,7 +80,11 @@ fn audits(file: &Path) -> Vec<anyhow::Result<(String, Audit)>> {
 
 fn print(file: &str, audit: &Audit) -> std::io::Result<()> {
     let mut out = output::person();
-    let verdict = if audit.is_confirmed() { "confirmed" } else { "not confirmed" };
+    let verdict = match audit.is_confirmed() {
+        true if audit.is_of_no_motion() => "states no motion",
+        true => "confirmed",
+        false => "not confirmed",
+    };
     writeln!(out, "{file}: {}, {verdict}", audit.name)?;
     // What has one reason is said once.
     for alike in audit.statements.chunk_by(|a, b| a.reason.is_some() && a.reason == b.reason) {

@@ -5,8 +5,8 @@
 
 use crate::origin::{gait_of, under_its_limits};
 use crate::result::GaitResult;
-use piaffe_model::Gait;
 use piaffe_model::motion::Motion;
+use piaffe_model::{Description, Gait};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -24,6 +24,9 @@ const HISTORY: [&str; 7] =
 const ABSENT: &str = "not_examined";
 /// What an optimum may leave open, if it says so: what is told beyond the verdict.
 const MAY_BE_ABSENT: [&str; 3] = ["sensitivities", "stability", "real_legs"];
+
+/// Of a result that has no motion.
+const NONE_FOUND: &str = "there is no motion: that none was found is a statement about the search";
 
 /// What became of a statement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -77,7 +80,7 @@ impl Audit {
     }
 
     /// The same, where it is known already what the motion makes ([`derived`]).
-    pub fn against(stated: &Value, result: &GaitResult, found: Result<&GaitResult, &(Verdict, String)>) -> Audit {
+    pub fn against(stated: &Value, result: &GaitResult, found: Result<&GaitResult, &Refusal>) -> Audit {
         let none = serde_json::Map::new();
         let entries = stated.as_object().unwrap_or(&none);
         let (history, claims): (Vec<_>, Vec<_>) = entries
@@ -90,7 +93,10 @@ impl Audit {
                 let compared = claims.iter().map(|(key, value)| Statement::compared(key, value, found, &derived));
                 compared.chain(missing(entries, result, &derived)).collect()
             }
-            Err((verdict, reason)) => {
+            Err(Refusal::NoMotion(d)) => {
+                claims.iter().map(|(key, value)| Statement::of_search(key, value, d)).collect()
+            }
+            Err(Refusal::Because(verdict, reason)) => {
                 claims.iter().map(|(key, _)| Statement::whole(key, *verdict, reason.clone())).collect()
             }
         };
@@ -104,6 +110,11 @@ impl Audit {
     pub fn is_confirmed(&self) -> bool {
         let mut of_motion = self.statements.iter().filter(|s| s.verdict != Verdict::NotDerivable).peekable();
         of_motion.peek().is_some() && of_motion.all(|s| s.verdict == Verdict::Confirmed)
+    }
+
+    /// Whether it is of a search that found no motion, and says so.
+    pub fn is_of_no_motion(&self) -> bool {
+        self.statements.iter().any(|s| s.entry == "status" && s.verdict == Verdict::NotDerivable)
     }
 
     /// The first statement that was not confirmed, in words.
@@ -142,20 +153,29 @@ fn missing<'a>(
         .map(|(key, _)| Statement::whole(key, Verdict::NotConfirmed, "it is missing, without a word of why".into()))
 }
 
-/// The result that the variables of another one make, or why there is none.
+/// Why there is nothing to compare a result with.
+#[derive(Clone, Debug)]
+pub enum Refusal {
+    /// It has no motion, of the gait with this description: what can be said of it is about the search, and the gait.
+    NoMotion(Box<Description>),
+    /// The verdict on all that is stated, and the reason.
+    Because(Verdict, String),
+}
+
+/// The result that the variables of another one make.
 ///
 /// # Errors
-/// With the verdict on all that is stated, and the reason.
-pub fn derived(result: &GaitResult, gaits: &[&dyn Gait]) -> Result<GaitResult, (Verdict, String)> {
-    let gait = gait_of(result, gaits).map_err(|unusable| (Verdict::NotChecked, unusable.to_string()))?;
+/// Why there is none.
+pub fn derived(result: &GaitResult, gaits: &[&dyn Gait]) -> Result<GaitResult, Refusal> {
+    let gait = gait_of(result, gaits).map_err(|foreign| Refusal::Because(Verdict::NotChecked, foreign.to_string()))?;
     if result.variables.is_empty() {
-        let reason = "there is no motion: that none was found is a statement about the search";
-        return Err((Verdict::NotChecked, reason.into()));
+        return Err(Refusal::NoMotion(Box::new(gait.description().clone())));
     }
+    let refuted = |reason: String| Refusal::Because(Verdict::NotConfirmed, reason);
     let motion = Motion { half_steps: result.variables.clone() };
     under_its_limits(result, gait, |gait| GaitResult::of_motion(gait, result.criterion, result.speed, &motion))
-        .map_err(|obstacle| (Verdict::NotConfirmed, obstacle))?
-        .map_err(|error| (Verdict::NotConfirmed, format!("its motion cannot be derived anew: {error}")))
+        .map_err(refuted)?
+        .map_err(|error| refuted(format!("its motion cannot be derived anew: {error}")))
 }
 
 impl Statement {
@@ -165,6 +185,19 @@ impl Statement {
         compare(entry, stated, found, &mut differences);
         let verdict = if differences.is_empty() { Verdict::Confirmed } else { Verdict::NotConfirmed };
         Statement { entry: entry.into(), verdict, reason: None, differences }
+    }
+
+    /// An entry of a result without a motion. That none was found follows from nothing; what the gait is, from the build; all
+    /// else would be about a motion that is not there.
+    fn of_search(entry: &str, stated: &Value, d: &Description) -> Statement {
+        let found_none = stated.as_str().is_some_and(|status| status != "optimal");
+        match entry {
+            "robot" => Statement::of(entry, stated, &d.robot.into()),
+            "polynomial_order" => Statement::of(entry, stated, &d.polynomial_order.into()),
+            "message" => Statement::whole(entry, Verdict::NotDerivable, NONE_FOUND.into()),
+            "status" if found_none => Statement::whole(entry, Verdict::NotDerivable, NONE_FOUND.into()),
+            _ => Statement::whole(entry, Verdict::NotConfirmed, "there is no motion that it could be of".into()),
+        }
     }
 
     fn whole(entry: &str, verdict: Verdict, reason: String) -> Statement {
