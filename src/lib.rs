@@ -36,6 +36,7 @@ pub mod gaits {
     include!(concat!(env!("OUT_DIR"), "/gaits.rs"));
 }
 
+#[cfg(feature = "cli")]
 mod specification {
     include!(concat!(env!("OUT_DIR"), "/specification.rs"));
 }
