@@ -11,7 +11,7 @@
 //! Sℓ1QP, 1982). Exact or Gauss-Newton Hessians are convexified where they must be; without them, damped BFGS. The code reads in the order [`minimize`], `direction`, `trial`, `screening`, [`qp`].
 //!
 //! ```
-//! use crate::{Control, Options, Problem, Undefined, Values, minimize};
+//! use piaffe_sqp::{Control, Options, Problem, Undefined, Values, minimize};
 //!
 //! /// The point of the unit disc that lies farthest down the slope x₀ + x₁.
 //! struct Disc([f64; 2]);
