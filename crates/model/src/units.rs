@@ -2,7 +2,7 @@
 //!
 //! The problem is solved and its solution judged in these. Robots of one shape, whatever their size and weight, are then one
 //! problem: speeds are Froude numbers, forces parts of the weight, and no number in the optimizer has a unit.
-//! The verifier has units of its own ([`margins`](piaffe_verify::margins)).
+//! The verifier has units of its own (`piaffe_verify::margins`).
 
 use crate::Description;
 use crate::motion::Criterion;
