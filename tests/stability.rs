@@ -106,7 +106,7 @@ impl<'a> Tracked<'a> {
         let mut velocity = vec![0.0; nc];
         self.gait.platform_velocity(at.phase, &q, &qd, &mut velocity);
         let mut impact = self.d.shapes.impact.zeros();
-        self.gait.impact(1 - at.phase, &q, &[velocity, qd].concat(), &mut impact);
+        self.gait.impact(1 - at.phase, &q, &[&velocity[..], &qd].concat(), &mut impact);
         let (q, qd) = (self.renamed(&q), self.renamed(&self.d.shapes.impact.xd_plus.of(&impact)[nc..]));
         let phase = (at.phase + 1) % self.durations.len();
         let sigma = self.terms(phase, &q, &qd)[2];
@@ -315,12 +315,12 @@ fn along_the_path(tracked: &Tracked, motion: &Motion, phase: usize, entry: f64) 
     let (q, qd) = path(&at);
     let share = sigma / tracked.terms(phase, &q, &qd)[2];
     let qd: Vec<f64> = qd.iter().map(|rate| share * rate).collect();
-    let (nq, nc) = (tracked.d.orientations(), tracked.d.positions());
-    let mut velocity = vec![0.0; nc];
+    let mut velocity = vec![0.0; tracked.d.positions()];
     tracked.gait.platform_velocity(phase, &q, &qd, &mut velocity);
-    let mut impact = vec![0.0; 2 * nc + nq];
-    tracked.gait.impact(1 - phase, &q, &[velocity, qd].concat(), &mut impact);
-    let (q, qd) = (tracked.renamed(&q), tracked.renamed(&impact[nc..nc + nq]));
+    let landed = &tracked.d.shapes.impact;
+    let mut impact = landed.zeros();
+    tracked.gait.impact(1 - phase, &q, &[&velocity[..], &qd].concat(), &mut impact);
+    let (q, qd) = (tracked.renamed(&q), tracked.renamed(&landed.xd_plus.of(&impact)[velocity.len()..]));
     Some(tracked.terms((phase + 1) % tracked.d.phases(), &q, &qd)[2])
 }
 

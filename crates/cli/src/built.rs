@@ -35,6 +35,13 @@ pub fn gaits() -> &'static [&'static dyn Gait] {
     build().gaits
 }
 
+/// The module that a build would make of a folder: one of its name, none of that of the specification itself.
+pub fn module_of(folder: &Path) -> std::io::Result<String> {
+    let absolute = std::path::absolute(folder)?;
+    let name = absolute.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    Ok(if Path::new(build().folder).file_name() == absolute.file_name() { String::new() } else { name })
+}
+
 /// Files that are named.
 const SHOWN: usize = 3;
 

@@ -1,6 +1,6 @@
 //! `piaffe check`: what a build would say of a robot's folder, and a drawing of the robot as it stands.
 
-use super::{output, whole};
+use super::{built, output, whole};
 use anyhow::anyhow;
 use piaffe_codegen::spec::{parse_gait, parse_robot};
 use piaffe_codegen::{RobotFiles, check};
@@ -9,10 +9,7 @@ use std::path::Path;
 
 pub fn run(folder: &Path, drawing: Option<&Path>) -> anyhow::Result<bool> {
     let mut files = RobotFiles::read(folder).map_err(|why| anyhow!("{why}"))?;
-    // The first robot's folder names no module.
-    if files.module == "model-spec" {
-        files.module = String::new();
-    }
+    files.module = built::module_of(folder)?;
     check(std::slice::from_ref(&files)).map_err(|why| anyhow!("this would not build\n{why}"))?;
     let robot = parse_robot(&files.robot.path, &files.robot.text).map_err(|_| anyhow!("this would not build"))?;
     let gaits = files.gaits.iter().filter_map(|file| parse_gait(&file.path, &file.text, &robot).ok());

@@ -1,6 +1,6 @@
 //! `piaffe import`: a URDF or MJCF becomes a folder with a specification that builds.
 
-use super::{input, output, whole};
+use super::{built, input, output, whole};
 use anyhow::{Context, bail};
 use piaffe_codegen::{RobotFiles, SpecFile, check};
 use piaffe_import::{Direction, FootPoint, Lock, Options, Setting, Stops, import};
@@ -102,9 +102,7 @@ pub fn run(arguments: Arguments) -> anyhow::Result<bool> {
 
 /// The last word before anything is written: what a build would say of these files in this folder.
 fn builds(folder: &Path, files: &[(PathBuf, String)]) -> anyhow::Result<()> {
-    let absolute = std::path::absolute(folder)?;
-    let name = absolute.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let module = if name == "model-spec" { String::new() } else { name };
+    let module = built::module_of(folder)?;
     let file = |(path, text): &(PathBuf, String)| SpecFile { path: path.display().to_string(), text: text.clone() };
     let robot = RobotFiles { module, robot: file(&files[0]), gaits: files[1..].iter().map(file).collect() };
     check(&[robot]).map_err(|why| anyhow::anyhow!("this would not build: {why}"))

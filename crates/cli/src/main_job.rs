@@ -1,7 +1,7 @@
 //! The main job: every gait and criterion at 0.6 m/s, beside the values of the paper (§6.2, §6.3).
 
 use super::digits::decimal;
-use super::optimize::{progress, solve};
+use super::optimize::progress;
 use super::{first_robot, output, report};
 use piaffe_model::motion::Criterion;
 use piaffe_optimizer::result::Receipt;
@@ -60,7 +60,7 @@ pub fn run(folder: &Path) -> anyhow::Result<bool> {
         for gait in &gaits {
             let name = gait.description().gait;
             bar.set_message(format!("{name}, {} ({} of {searches})", criterion.name(), records.len() + 1));
-            let mut result = solve(Task { gait: *gait, criterion, speed: SPEED }, &[], &settings, &bar);
+            let mut result = Task { gait: *gait, criterion, speed: SPEED }.search(&settings, &[], &|_| bar.inc(1));
             result.examine(*gait);
             output::write_json(&folder.join(format!("{name}-{}.json", criterion.name())), &result)?;
             let record = Record::issued(result, *gait);

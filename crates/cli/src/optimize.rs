@@ -6,20 +6,20 @@ use piaffe_optimizer::altered::Altered;
 use piaffe_optimizer::result::{GaitResult, Status};
 use piaffe_optimizer::search::fastest::nearest_speed;
 use piaffe_optimizer::search::local::Task;
-use piaffe_optimizer::search::multi_start::{Settings, search_from};
-use std::time::Instant;
+use piaffe_optimizer::search::multi_start::Settings;
 
 pub fn run(task: Task, real_legs: bool, settings: &Settings, json: Option<&str>) -> anyhow::Result<bool> {
     let Task { mut gait, criterion, speed } = task;
     let altered = real_legs.then(|| Altered::at_real_legs(gait)).transpose().map_err(anyhow::Error::msg)?;
     let bar = progress(settings.starts);
-    let mut result = solve(task, &[], settings, &bar);
+    let ended = |_| bar.inc(1);
+    let mut result = task.search(settings, &[], &ended);
     if let Some(altered) = &altered {
         // Sought from the optimum without these limits too.
         gait = altered;
         let (from, virtual_cost): (Vec<_>, _) = (result.theta().into_iter().collect(), result.cost);
         bar.set_position(0);
-        result = GaitResult { virtual_cost, ..solve(Task { gait, ..task }, &from, settings, &bar) };
+        result = GaitResult { virtual_cost, ..Task { gait, ..task }.search(settings, &from, &ended) };
     }
     if result.status == Status::Infeasible {
         bar.set_message("nearest speed that works");
@@ -37,14 +37,6 @@ pub fn run(task: Task, real_legs: bool, settings: &Settings, json: Option<&str>)
         }
     }
     Ok(result.is_optimal())
-}
-
-/// Searches, from these motions too, and verifies; the bar advances with every start.
-pub fn solve(task: Task, from: &[Vec<f64>], settings: &Settings, bar: &ProgressBar) -> GaitResult {
-    let Task { gait, criterion, speed } = task;
-    let started = Instant::now();
-    let found = search_from(gait, criterion, speed, settings, from, &|_| bar.inc(1));
-    GaitResult::new(gait, criterion, speed, &found, settings.seed, || started.elapsed().as_secs_f64())
 }
 
 /// Counts starts on standard error, with a bar if it is known how many there will be; hidden where that is no terminal.

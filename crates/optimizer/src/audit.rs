@@ -93,8 +93,8 @@ impl Audit {
                 let compared = claims.iter().map(|(key, value)| Statement::compared(key, value, found, &derived));
                 compared.chain(missing(entries, result, &derived)).collect()
             }
-            Err(Refusal::NoMotion(d)) => {
-                claims.iter().map(|(key, value)| Statement::of_search(key, value, d)).collect()
+            Err(Refusal::NoMotion(built)) => {
+                claims.iter().map(|(key, value)| Statement::of_search(key, value, result, built)).collect()
             }
             Err(Refusal::Because(verdict, reason)) => {
                 claims.iter().map(|(key, _)| Statement::whole(key, *verdict, reason.clone())).collect()
@@ -156,10 +156,17 @@ fn missing<'a>(
 /// Why there is nothing to compare a result with.
 #[derive(Clone, Debug)]
 pub enum Refusal {
-    /// It has no motion, of the gait with this description: what can be said of it is about the search, and the gait.
-    NoMotion(Box<Description>),
+    /// It has no motion: what can be said of it is about the search, and the gait, as it was built.
+    NoMotion(Built),
     /// The verdict on all that is stated, and the reason.
     Because(Verdict, String),
+}
+
+/// What a result without a motion tells of its gait.
+#[derive(Clone, Copy, Debug)]
+pub struct Built {
+    robot: &'static str,
+    polynomial_order: usize,
 }
 
 /// The result that the variables of another one make.
@@ -169,7 +176,8 @@ pub enum Refusal {
 pub fn derived(result: &GaitResult, gaits: &[&dyn Gait]) -> Result<GaitResult, Refusal> {
     let gait = gait_of(result, gaits).map_err(|foreign| Refusal::Because(Verdict::NotChecked, foreign.to_string()))?;
     if result.variables.is_empty() {
-        return Err(Refusal::NoMotion(Box::new(gait.description().clone())));
+        let Description { robot, polynomial_order, .. } = *gait.description();
+        return Err(Refusal::NoMotion(Built { robot, polynomial_order }));
     }
     let refuted = |reason: String| Refusal::Because(Verdict::NotConfirmed, reason);
     let motion = Motion { half_steps: result.variables.clone() };
@@ -189,13 +197,12 @@ impl Statement {
 
     /// An entry of a result without a motion. That none was found follows from nothing; what the gait is, from the build; all
     /// else would be about a motion that is not there.
-    fn of_search(entry: &str, stated: &Value, d: &Description) -> Statement {
-        let found_none = stated.as_str().is_some_and(|status| status != "optimal");
+    fn of_search(entry: &str, stated: &Value, result: &GaitResult, built: &Built) -> Statement {
         match entry {
-            "robot" => Statement::of(entry, stated, &d.robot.into()),
-            "polynomial_order" => Statement::of(entry, stated, &d.polynomial_order.into()),
+            "robot" => Statement::of(entry, stated, &built.robot.into()),
+            "polynomial_order" => Statement::of(entry, stated, &built.polynomial_order.into()),
             "message" => Statement::whole(entry, Verdict::NotDerivable, NONE_FOUND.into()),
-            "status" if found_none => Statement::whole(entry, Verdict::NotDerivable, NONE_FOUND.into()),
+            "status" if !result.is_optimal() => Statement::whole(entry, Verdict::NotDerivable, NONE_FOUND.into()),
             _ => Statement::whole(entry, Verdict::NotConfirmed, "there is no motion that it could be of".into()),
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::result::GaitResult;
 use crate::search::local::Task;
-use crate::search::multi_start::{Settings, search};
+use crate::search::multi_start::{Settings, search_from};
 use piaffe_model::Gait;
 use piaffe_model::motion::Criterion;
 use std::time::Instant;
@@ -45,12 +45,18 @@ impl<'a> Task<'a> {
     /// # Errors
     /// If the speed is no positive number.
     pub fn optimize_with(&self, settings: &Settings) -> Result<GaitResult, Unaskable> {
-        let Task { gait, criterion, speed } = *self;
+        let speed = self.speed;
         if !(speed.is_finite() && speed > 0.0) {
             return Err(Unaskable { speed });
         }
+        Ok(self.search(settings, &[], &|_| {}))
+    }
+
+    /// The same from these motions' variables Θ too, at a speed that can be asked for. `done(k)` is told when start `k` has ended.
+    pub fn search(&self, settings: &Settings, from: &[Vec<f64>], done: &(dyn Fn(usize) + Sync)) -> GaitResult {
+        let Task { gait, criterion, speed } = *self;
         let started = Instant::now();
-        let found = search(gait, criterion, speed, settings, &|_| {});
-        Ok(GaitResult::new(gait, criterion, speed, &found, settings.seed, || started.elapsed().as_secs_f64()))
+        let found = search_from(gait, criterion, speed, settings, from, done);
+        GaitResult::new(gait, criterion, speed, &found, settings.seed, || started.elapsed().as_secs_f64())
     }
 }

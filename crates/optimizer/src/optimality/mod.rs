@@ -6,8 +6,8 @@
 
 use crate::cycle::{AT_REST, Cycle, Label, Place, theta};
 use crate::search::refine::dips;
-use piaffe_model::Gait;
 use piaffe_model::motion::{Criterion, Motion};
+use piaffe_model::{Gait, Limit};
 use piaffe_sqp::{Multipliers, Undefined, multipliers};
 use serde::{Deserialize, Serialize};
 
@@ -97,8 +97,8 @@ pub fn optimality(gait: &dyn Gait, criterion: Criterion, speed: f64, motion: &Mo
 impl Price {
     /// That of a bound: positive at the lower one, negative at the upper.
     fn of_bound(self) -> Price {
-        let constraint = if self.value > 0.0 { "shortest half step" } else { "longest half step" };
-        Price { constraint: constraint.into(), value: self.value.abs(), ..self }
+        let limit = if self.value > 0.0 { Limit::ShortestHalfStep } else { Limit::LongestHalfStep };
+        Price { constraint: limit.name().into(), value: self.value.abs(), ..self }
     }
 }
 
