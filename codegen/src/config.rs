@@ -201,6 +201,34 @@ fn entries(root: &Path, folder: &Path) -> Result<Vec<PathBuf>, String> {
 }
 
 impl RobotFiles {
+    /// The robots of a folder, as a build finds them: its own first, whose gaits need no module, then those of the folders in it.
+    ///
+    /// # Errors
+    /// What is missing or cannot be read.
+    pub fn of_folder(folder: &Path) -> Result<Vec<RobotFiles>, String> {
+        robots(Path::new(""), folder)
+    }
+
+    /// Changes a number where it stands: in the robot's file, or else in those of the gaits that have it.
+    ///
+    /// # Errors
+    /// If there is none of this name, which there are.
+    pub fn set(&mut self, name: &str, value: f64) -> Result<(), String> {
+        if let Some(text) = spec::set(&self.robot.text, name, value) {
+            self.robot.text = text;
+            return Ok(());
+        }
+        let mut known = false;
+        for gait in &mut self.gaits {
+            if let Some(text) = spec::set(&gait.text, name, value) {
+                (gait.text, known) = (text, true);
+            }
+        }
+        let texts = self.gaits.iter().map(|gait| gait.text.as_str());
+        let unknown = || spec::unknown(name, texts.chain([self.robot.text.as_str()]));
+        if known { Ok(()) } else { Err(unknown()) }
+    }
+
     /// Reads a robot's folder: `robot.toml` and `gaits/*.toml`. Its module is called like the folder.
     ///
     /// # Errors
@@ -218,6 +246,26 @@ impl RobotFiles {
 /// The rendered diagnostics, if the specification has mistakes.
 pub fn check(robots: &[RobotFiles]) -> Result<(), String> {
     parse(robots).map(|_| ())
+}
+
+/// A robot with its gaits, as its files describe it.
+#[derive(Clone, Debug)]
+pub struct Specified {
+    pub robot: Robot,
+    /// In the order of their files.
+    pub gaits: Vec<Gait>,
+}
+
+/// The robots that these files describe.
+///
+/// # Errors
+/// The rendered diagnostics, if the specification has mistakes.
+pub fn specified(robots: &[RobotFiles]) -> Result<Vec<Specified>, String> {
+    let specified = |robot: Parsed| {
+        let gaits = robot.gaits.into_iter().map(|(gait, _)| gait).collect();
+        Specified { robot: robot.spec, gaits }
+    };
+    Ok(parse(robots)?.into_iter().map(specified).collect())
 }
 
 /// The whole of code generation as a pure function: specification texts → source files.

@@ -18,4 +18,4 @@ pub mod spec;
 mod turns;
 pub mod typeset;
 
-pub use config::{Config, Generated, RobotFiles, SpecFile, check, generate, generate_families};
+pub use config::{Config, Generated, RobotFiles, SpecFile, Specified, check, generate, generate_families, specified};

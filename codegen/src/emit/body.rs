@@ -5,7 +5,7 @@ use super::scopes::{Scopes, Statement};
 use super::tokens::{Written, ident, size, whole};
 use crate::dynamics::{Input, Shape};
 use crate::expr::Kind;
-use crate::program::{Id, Node, Sum, Term};
+use crate::program::{Id, Node, Sine, Step, Sum, Term, terms};
 use proc_macro2::{Ident, Punct, Spacing, TokenStream, TokenTree};
 use quote::{format_ident, quote};
 
@@ -25,7 +25,6 @@ enum Form {
 /// A program as it is written: what its nodes are called, and which of them anything needs.
 struct Body<'a> {
     function: &'a Function<'a>,
-    order: Vec<Id>,
     used: Vec<bool>,
     names: Vec<Ident>,
     form: Form,
@@ -69,11 +68,10 @@ fn sign(sign: char) -> TokenTree {
 
 impl<'a> Body<'a> {
     fn new(function: &'a Function, form: Form) -> Written<Body<'a>> {
-        let order = function.program.schedule_sines_first();
         let mut used = vec![false; function.program.nodes.len()];
-        order.iter().for_each(|id| used[*id as usize] = true);
+        function.program.schedule().into_iter().for_each(|id| used[id as usize] = true);
         let names = function.program.nodes.iter().enumerate().map(|(id, node)| name(function, id, *node));
-        Ok(Body { function, order, used, names: names.collect::<Written<_>>()?, form })
+        Ok(Body { function, used, names: names.collect::<Written<_>>()?, form })
     }
 
     /// The scopes of its statements; whether the outputs are evaluated behind them.
@@ -117,70 +115,43 @@ impl<'a> Body<'a> {
         })
     }
 
-    /// Arguments of sines and cosines, with the nodes that are their sine and cosine.
-    fn sines(&self) -> Vec<(usize, [Option<Id>; 2])> {
-        let mut sines: Vec<(usize, [Option<Id>; 2])> = Vec::new();
-        for id in &self.order {
-            let (argument, which) = match self.function.program.nodes[*id as usize] {
-                Node::Sin(s) => (s, 0),
-                Node::Cos(s) => (s, 1),
-                _ => continue,
-            };
-            let known = sines.iter().position(|(s, _)| *s == argument);
-            let k = known.unwrap_or_else(|| {
-                sines.push((argument, [None; 2]));
-                sines.len() - 1
-            });
-            sines[k].1[which] = Some(*id);
-        }
-        sines
-    }
-
     /// A `let` for every node, but for sines and cosines, which are bound some at once.
     fn bindings(&self) -> Written<Vec<Statement>> {
-        let program = &self.function.program;
-        let mut sines = self.sines();
-        let mut bindings = Vec::with_capacity(self.order.len());
-        for id in &self.order {
-            let name = &self.names[*id as usize];
-            let (s, lines) = match program.nodes[*id as usize] {
-                Node::Input(..) => continue,
-                Node::Sin(_) | Node::Cos(_) => {
-                    // They follow one another: with the first, all are bound.
-                    for pairs in std::mem::take(&mut sines).chunks(AT_ONCE) {
-                        bindings.push(self.sines_of(pairs)?);
+        let mut bindings = Vec::new();
+        for step in self.function.program.steps() {
+            let (id, sum, value) = match step {
+                Step::Sines(sines) => {
+                    for some in sines.chunks(AT_ONCE) {
+                        bindings.push(self.sines_of(some)?);
                     }
                     continue;
                 }
-                Node::Value(s) => {
-                    let value = self.value(s)?;
-                    (s, quote!(let #name = #value;))
-                }
-                Node::Reciprocal(s) => {
-                    let value = self.value(s)?;
-                    (s, quote!(let #name = 1.0 / (#value);))
+                Step::Value(id, sum) => (id, sum, self.value(sum)?),
+                Step::Reciprocal(id, sum) => {
+                    let value = self.value(sum)?;
+                    (id, sum, quote!(1.0 / (#value)))
                 }
             };
-            bindings.push(Statement { nodes: vec![*id], sums: vec![s], lines });
+            let name = &self.names[id as usize];
+            bindings.push(Statement { nodes: vec![id], sums: vec![sum], lines: quote!(let #name = #value;) });
         }
         Ok(bindings)
     }
 
-    /// Sines and cosines of the arguments that are these sums.
-    fn sines_of(&self, pairs: &[(usize, [Option<Id>; 2])]) -> Written<Statement> {
-        let arguments = pairs.iter().map(|(s, _)| self.value(*s)).collect::<Written<Vec<_>>>()?;
+    fn sines_of(&self, sines: &[Sine]) -> Written<Statement> {
+        let arguments = sines.iter().map(|sine| self.value(sine.argument)).collect::<Written<Vec<_>>>()?;
         let name = |id: Option<Id>| id.map_or(quote!(_), |id| TokenTree::from(self.names[id as usize].clone()).into());
-        let values = pairs.iter().map(|(_, pair)| {
-            let [sin, cos] = pair.map(name);
+        let values = sines.iter().map(|sine| {
+            let [sin, cos] = [sine.sin, sine.cos].map(name);
             quote!((#sin, #cos))
         });
-        let lines = match (pairs.len(), self.form) {
+        let lines = match (sines.len(), self.form) {
             (1, _) => quote!(let #(#values)* = math::sin_cos(#(#arguments)*);),
             (_, Form::Single) => quote!(let [#(#values),*] = math::sin_cos_together([#(#arguments),*]);),
             (_, Form::Lane) => quote!(let [#(#values),*] = math::sin_cos_in_step([#(#arguments),*]);),
         };
-        let nodes = pairs.iter().flat_map(|(_, pair)| pair).flatten().copied().collect();
-        Ok(Statement { nodes, sums: pairs.iter().map(|(s, _)| *s).collect(), lines })
+        let nodes = sines.iter().flat_map(|sine| [sine.sin, sine.cos]).flatten().collect();
+        Ok(Statement { nodes, sums: sines.iter().map(|sine| sine.argument).collect(), lines })
     }
 
     /// The bindings, and after each the outputs that it makes known. Sums that are several outputs follow in the end: they
@@ -230,10 +201,7 @@ impl<'a> Body<'a> {
             return Ok(quote!(0.0));
         }
         let mut tokens = Vec::with_capacity(sum.iter().map(|t| 2 * t.factors.len() + 2).sum());
-        // Positive terms first spares a negation.
-        let first = sum.iter().position(|t| t.coefficient > 0.0).unwrap_or(0);
-        let others = sum.iter().enumerate().filter(|(i, _)| *i != first).map(|(_, t)| t);
-        for term in sum.get(first).into_iter().chain(others) {
+        for term in terms(sum) {
             if term.coefficient < 0.0 {
                 tokens.push(sign('-'));
             } else if !tokens.is_empty() {
@@ -246,9 +214,10 @@ impl<'a> Body<'a> {
 
     /// A term without its sign.
     fn product(&self, term: &Term, tokens: &mut Vec<TokenTree>) -> Written<()> {
-        let mut begun = term.coefficient.abs() != 1.0 || term.factors.is_empty();
-        if begun {
-            tokens.push(size(term.coefficient)?.into());
+        let number = term.number();
+        let mut begun = number.is_some();
+        if let Some(number) = number {
+            tokens.push(size(number)?.into());
         }
         for id in &term.factors {
             if begun {

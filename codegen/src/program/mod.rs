@@ -5,13 +5,18 @@ mod factor;
 mod group;
 mod lower;
 mod market;
+pub mod math;
+mod steps;
 
 pub use factor::Search;
+pub use steps::{Sine, Step, terms};
 
 use crate::dynamics::Kernel;
 use crate::expr::Ring;
+use crate::turns::in_turn;
 use group::Groups;
 use smallvec::SmallVec;
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 /// Index of a node.
@@ -89,6 +94,15 @@ const LEAST_GROUP: [usize; 7] = [7, 4, 6, usize::MAX, 9, 2, 3];
 
 /// Pairs of terms that attempts may look at, the first one apart: a bound on the time that a kernel takes.
 const PAIRS: usize = 3_000;
+
+/// The program of each kernel, in order, with what it would cost as derived.
+pub fn programs(ring: &Ring, kernels: &[Kernel]) -> Vec<(Program, Operations)> {
+    let make = |search: &mut Search, kernel| {
+        let derived = Program::as_derived(ring, kernel);
+        (derived.factored(search), derived.operations())
+    };
+    in_turn(kernels, |kernel| Reverse(kernel.pairs()), Search::default, make)
+}
 
 impl Program {
     /// Lowers a kernel and factors it.

@@ -6,6 +6,8 @@
 //! satisfy beyond its form is checked in `bodies.rs`, `tree.rs`, `chain.rs` (robot), `pairing.rs`, `mirror.rs` and
 //! `coordinates.rs` (gait).
 //!
+//! `set.rs` changes numbers where they stand in the files.
+//!
 //! What gaits make of legs is in `locked.rs` (joints held still) and `as_one.rs` (legs that move as one).
 //!
 //! A quantity with a unit never has a default, but where absence says all there is: a platform's mass centre
@@ -36,6 +38,7 @@ mod pairing;
 mod rigid;
 mod robot;
 mod schema;
+mod set;
 mod syntax;
 mod tree;
 mod types;
@@ -51,4 +54,5 @@ pub use locked::Tilted;
 pub use name::unusable_as_folder;
 pub use robot::{RobotFile, parse_robot};
 pub use schema::{gait_schema, robot_schema};
+pub use set::{set, unknown};
 pub use types::*;

@@ -108,6 +108,14 @@ macro_rules! shapes {
             pub fn zeros(&self) -> Vec<f64> {
                 vec![0.0; self.len]
             }
+
+            /// From where each block stands, by its name behind `path`: `curvature.gradient`, `curvature.n.torque`.
+            pub fn named(path: &str, block: &dyn Fn(&str) -> Block) -> $kernel {
+                let ($($block,)*) = ($(block(&format!("{path}.{}", stringify!($block))),)*);
+                let len = 0 $(+ $block.len())*;
+                $($(let $input = $weights::named(&format!("{path}.{}", stringify!($input)), block);)*)?
+                $kernel { $($block,)* $($($input,)*)? len }
+            }
         })*
     };
 }
@@ -123,6 +131,12 @@ macro_rules! all {
 
         impl $name {
             pub const NONE: $name = $name { $($field: $crate::shape::$kernel::NONE,)* };
+
+            /// From where each block stands, by its name behind `path`, which is empty or ends in a dot.
+            pub fn named(path: &str, block: &dyn Fn(&str) -> $crate::shape::Block) -> $name {
+                $(let $field = $crate::shape::$kernel::named(&format!("{path}{}", stringify!($field)), block);)*
+                $name { $($field,)* }
+            }
         }
     };
 }

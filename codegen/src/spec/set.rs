@@ -1,0 +1,146 @@
+//! Numbers of a specification changed where they stand, so that the files that come of it say all.
+//!
+//! Their names are the keys that lead to them, as in `links.thigh.mass`; of a list's elements those that say what they are:
+//! `legs.fore_left.mount.x`, `joints.knee.range.lower`. Places of legs' mounts at the same distance to either side stay so.
+
+use super::nearest::nearest;
+use std::ops::Range;
+use toml::de::{DeTable, DeValue};
+
+/// A number in a file.
+struct Number {
+    name: String,
+    value: f64,
+    span: Range<usize>,
+}
+
+/// The text of a file with another number in it; `None` if no number there is called like this.
+pub fn set(text: &str, name: &str, value: f64) -> Option<String> {
+    let numbers = numbers(text);
+    let old = numbers.iter().find(|number| number.name == name)?.value;
+    let mut changed = text.to_string();
+    // From behind: what is before stays where it is.
+    for number in numbers.iter().rev() {
+        if let Some(sign) = tied(name, old, number) {
+            changed.replace_range(number.span.clone(), &written(sign * value));
+        }
+    }
+    Some(changed)
+}
+
+/// The sign with which a number changes as that of this name and value does, if it does.
+fn tied(name: &str, value: f64, number: &Number) -> Option<f64> {
+    let axis = |name: &str| name.strip_prefix("legs.").and_then(|rest| Some(rest.split_once(".mount.")?.1.to_string()));
+    let both_mounts = axis(name).is_some() && axis(name) == axis(&number.name);
+    if number.name == name {
+        Some(1.0)
+    } else if both_mounts && value != 0.0 && number.value.abs() == value.abs() {
+        Some(number.value.signum() * value.signum())
+    } else {
+        None
+    }
+}
+
+/// What to say where no file has a number of this name.
+pub fn unknown<'t>(name: &str, texts: impl IntoIterator<Item = &'t str>) -> String {
+    const SHOWN: usize = 12;
+    let mut known: Vec<String> = texts.into_iter().flat_map(numbers).map(|number| number.name).collect();
+    known.sort();
+    known.dedup();
+    if let Some(near) = nearest(name, known.iter().map(String::as_str)) {
+        return format!("there is no number `{name}`: did you mean `{near}`?");
+    }
+    // Those that stand in the same table, if it is one.
+    let table = name.rsplit_once('.').map_or(String::new(), |(table, _)| format!("{table}."));
+    let beside: Vec<String> = known.iter().filter(|known| known.starts_with(&table)).cloned().collect();
+    let (whose, list) = if beside.is_empty() || table.is_empty() { ("there are", known) } else { ("beside it are", beside) };
+    let more = if list.len() > SHOWN { format!(" and {} more", list.len() - SHOWN) } else { String::new() };
+    format!("there is no number `{name}`; {whose} {}{more}", list[..list.len().min(SHOWN)].join(", "))
+}
+
+/// All numbers of a file, in its order; of one that is no TOML none.
+fn numbers(text: &str) -> Vec<Number> {
+    let mut numbers = Vec::new();
+    if let Ok(table) = DeTable::parse(text) {
+        in_table(table.get_ref(), "", &mut numbers);
+    }
+    numbers.sort_by_key(|number| number.span.start);
+    numbers
+}
+
+fn in_table(table: &DeTable, path: &str, numbers: &mut Vec<Number>) {
+    for (key, value) in table {
+        let path = if path.is_empty() { key.get_ref().to_string() } else { format!("{path}.{}", key.get_ref()) };
+        in_value(value.get_ref(), value.span(), path, key.get_ref(), numbers);
+    }
+}
+
+fn in_value(value: &DeValue, span: Range<usize>, name: String, key: &str, numbers: &mut Vec<Number>) {
+    let read = match value {
+        DeValue::Table(table) => return in_table(table, &name, numbers),
+        DeValue::Array(elements) => {
+            for (k, element) in elements.iter().enumerate() {
+                let name = format!("{name}.{}", part(key, elements.len(), k));
+                in_value(element.get_ref(), element.span(), name, key, numbers);
+            }
+            return;
+        }
+        DeValue::Integer(number) => number.to_string().parse().ok(),
+        DeValue::Float(number) => number.to_string().parse().ok(),
+        _ => None,
+    };
+    numbers.extend(read.map(|value| Number { name, value, span }));
+}
+
+/// What the k-th element of a list is.
+fn part(key: &str, length: usize, k: usize) -> String {
+    let names: &[&str] = match (key, length) {
+        ("products", 3) => &["yz", "zx", "xy"],
+        ("range", 2) => &["lower", "upper"],
+        (_, 2) if key.ends_with("duration") => &["shortest", "longest"],
+        (_, 3) => &["x", "y", "z"],
+        _ => &[],
+    };
+    names.get(k).map_or_else(|| (k + 1).to_string(), ToString::to_string)
+}
+
+/// As TOML has it: whole numbers without a point, since some must be whole.
+fn written(value: f64) -> String {
+    if value.fract() == 0.0 && value.abs() < 1e15 { format!("{value:.0}") } else { format!("{value:?}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ROBOT: &str = "gravity = 9.81 # m/s²\n[links.thigh]\nmass = 1.6 # kg\ncom = [0.0, -0.1, 0]\n[legs]\n\
+                         a = { mount = [0.2, 0.0, -0.15] }\nb = { mount = [-0.2, 0.0, 0.15] }\n\
+                         [joints.knee]\nrange = [-1.5, 0.0]\n";
+
+    #[test]
+    fn a_number_is_changed_where_it_stands_and_nothing_else() {
+        let changed = set(ROBOT, "links.thigh.mass", 1.25).unwrap();
+        assert_eq!(changed, ROBOT.replace("mass = 1.6 #", "mass = 1.25 #"));
+        let changed = set(ROBOT, "links.thigh.com.z", 1e-7).unwrap();
+        assert_eq!(changed, ROBOT.replace("-0.1, 0]", "-0.1, 1e-7]"));
+        let changed = set(ROBOT, "joints.knee.range.lower", -2.0).unwrap();
+        assert_eq!(changed, ROBOT.replace("[-1.5, 0.0]", "[-2, 0.0]"));
+        assert_eq!(set(ROBOT, "links.thigh", 1.0), None);
+        assert_eq!(set("[", "gravity", 1.0), None);
+    }
+
+    #[test]
+    fn mounts_on_either_side_stay_alike() {
+        let changed = set(ROBOT, "legs.b.mount.z", 0.125).unwrap();
+        assert_eq!(changed, ROBOT.replace("0.15]", "0.125]"));
+        let changed = set(ROBOT, "legs.a.mount.y", 0.125).unwrap();
+        assert_eq!(changed, ROBOT.replacen("0.2, 0.0,", "0.2, 0.125,", 1), "what is zero is nobody else's");
+    }
+
+    #[test]
+    fn names_that_are_none_lead_to_those_that_are() {
+        assert!(unknown("links.thigh.mas", [ROBOT]).ends_with("did you mean `links.thigh.mass`?"));
+        assert!(unknown("links.thigh.temperature", [ROBOT]).contains("beside it are links.thigh.com.x, links.thigh.com.y"));
+        assert!(unknown("zzzzzz", [ROBOT]).contains("there are gravity, joints.knee.range.lower"));
+    }
+}

@@ -1,0 +1,128 @@
+//! A mechanism's numbers as values of the runtime's types: what a build writes as code.
+
+use super::kept::{kept, text};
+use super::shapes::Shapes;
+use piaffe_codegen::dynamics::Kernel;
+use piaffe_codegen::mechanism::{self, Mechanism, points};
+use piaffe_codegen::program::{Program, Operations as Count};
+use piaffe_codegen::spec;
+use piaffe_model::{
+    Body, Description, HalfSteps, Joint, Leg, Limits, Member, Operations, Point, Rotation, Spot, shape,
+};
+use std::borrow::Cow;
+
+/// The description of a gait with the name `key`. `lowest` tells which of the mechanism's points can be the lowest.
+pub fn description(m: &Mechanism, key: &str, lowest: &[usize], kernels: &[Kernel], programs: &[(Program, Count)]) -> Description {
+    let shapes = Shapes::new(kernels);
+    let early = [0, 1].map(|leg| {
+        let name = format!("early{}", leg + 1);
+        kernels.iter().find(|kernel| kernel.name == name).map_or(0, |kernel| kernel.outputs[0].values.len())
+    });
+    let mut description = Description {
+        key: text(key),
+        gait: text(&m.gait),
+        robot: text(&m.robot),
+        gravity: m.gravity,
+        lateral: m.lateral,
+        rotation: match m.rotation {
+            spec::Rotation::None => Rotation::None,
+            spec::Rotation::Pitch => Rotation::Pitch,
+            spec::Rotation::Roll => Rotation::Roll,
+        },
+        half_steps: match m.half_steps {
+            spec::HalfSteps::Mirrored => HalfSteps::Mirrored,
+            spec::HalfSteps::Distinct => HalfSteps::Distinct,
+        },
+        bodies: each(&m.bodies, body),
+        corners: each(&m.corners, spot),
+        joints: each(&m.joints, joint),
+        legs: m.legs.each_ref().map(leg),
+        unactuated: m.unactuated,
+        polynomial_order: m.polynomial_order,
+        early,
+        points: kept(points(m).iter().map(point).collect()),
+        lowest: kept(lowest.to_vec()),
+        limits: limits(&m.limits),
+        shapes: &kept(vec![shape::Shapes::named("", &|name| shapes.block(name))])[0],
+        operations: kept(kernels.iter().zip(programs).map(operations).collect()),
+    };
+    // As code has them: zero without a sign.
+    description.for_each_number(&mut |number| *number += 0.0);
+    description
+}
+
+fn each<T, U: Clone>(things: &[T], make: impl Fn(&T) -> U) -> Cow<'static, [U]> {
+    things.iter().map(make).collect()
+}
+
+pub fn body(b: &mechanism::Body) -> Body {
+    let mechanism::Body { name, parent, coordinate, axis, offset, mass, com, inertia, .. } = b;
+    Body {
+        name: text(name),
+        parent: *parent,
+        coordinate: *coordinate,
+        axis: axis.index(),
+        offset: *offset,
+        mass: *mass,
+        com: *com,
+        inertia: *inertia,
+    }
+}
+
+fn joint(j: &mechanism::Actuated) -> Joint {
+    Joint {
+        name: text(&j.name),
+        range: j.range,
+        gear: j.gear,
+        max_torque: j.max_torque,
+        unloaded_speed: j.unloaded_speed,
+        loaded_speed: j.loaded_speed,
+        rotor_inertia: j.rotor_inertia,
+    }
+}
+
+fn leg(l: &mechanism::VirtualLeg) -> Leg {
+    Leg {
+        members: each(&l.members, member),
+        first_joint: l.joints.start,
+        end_joint: l.joints.end,
+        foot_body: l.foot_body,
+        foot: l.foot,
+    }
+}
+
+fn member(m: &mechanism::Member) -> Member {
+    Member {
+        name: text(&m.name),
+        bodies: each(&m.bodies, body),
+        joints: each(&m.joints, |name| text(name)),
+        foot: m.foot,
+        spots: each(&m.spots, spot),
+    }
+}
+
+fn spot(s: &mechanism::Spot) -> Spot {
+    Spot { body: s.body, at: s.at }
+}
+
+fn point(p: &mechanism::Point) -> Point {
+    Point { name: text(&p.name), of: p.of, spot: p.spot, leg: p.leg, mirrored: p.mirrored }
+}
+
+fn limits(l: &spec::Limits) -> Limits {
+    Limits {
+        friction: l.friction,
+        min_vertical_force: l.min_vertical_force,
+        swing_clearance: l.swing_clearance,
+        half_step_duration: l.half_step_duration,
+        min_platform_height: l.min_platform_height,
+        body_clearance: l.body_clearance,
+        real_legs: false,
+    }
+}
+
+/// There is no source: it has no length.
+fn operations((kernel, (program, derived)): (&Kernel, &(Program, Count))) -> Operations {
+    let Count { flops, divisions, sincos } = program.operations();
+    Operations { kernel: text(&kernel.name), flops, divisions, sincos, derived: derived.flops, bytes: 0 }
+}

@@ -1,0 +1,151 @@
+//! A gait that is evaluated as it was derived.
+
+use super::description::description;
+use super::kept::{kept, text};
+use super::tape::Unrunnable;
+use super::twins::{Twins, tapes};
+use super::whole::Whole;
+use piaffe_codegen::dynamics::{kernels, lowest};
+use piaffe_codegen::mechanism::{Mechanism, levers};
+use piaffe_codegen::program::programs;
+use piaffe_codegen::spec;
+use piaffe_codegen::typeset::latex;
+use piaffe_model::{Description, Gait, Lever, whole};
+use std::sync::OnceLock;
+
+/// A gait of a specification, derived when it was loaded: what a build would make of it, with the same bits.
+///
+/// What only some ask for (the whole robot, the closed forms, what the numbers of the specification are to the gait's) is derived
+/// when it is asked for. What the traits give out for ever stays for as long as the program: a few kilobytes for each gait.
+pub struct Interpreted {
+    robot: spec::Robot,
+    gait: spec::Gait,
+    description: Description,
+    kernels: Kernels,
+    whole: OnceLock<Option<&'static Whole>>,
+    latex: OnceLock<&'static str>,
+    levers: OnceLock<&'static [Lever]>,
+}
+
+impl Interpreted {
+    /// The gait of a robot, both validated, under the name `key`.
+    ///
+    /// # Errors
+    /// If the numbers of the robot make some that are none, or a kernel is too large.
+    pub fn new(robot: &spec::Robot, gait: &spec::Gait, key: &str) -> Result<Interpreted, Unrunnable> {
+        let mechanism = mechanism(robot, gait)?;
+        let (mut model, derived) = kernels(&mechanism);
+        let lowest = lowest(&mut model);
+        let programs = programs(&model.ring, &derived);
+        Ok(Interpreted {
+            robot: robot.clone(),
+            gait: gait.clone(),
+            description: description(&mechanism, key, &lowest, &derived, &programs),
+            kernels: Kernels::new(tapes(&derived, &programs)?),
+            whole: OnceLock::new(),
+            latex: OnceLock::new(),
+            levers: OnceLock::new(),
+        })
+    }
+}
+
+fn mechanism(robot: &spec::Robot, gait: &spec::Gait) -> Result<Mechanism, Unrunnable> {
+    Ok(Mechanism::new(&locked(robot, gait)?, gait))
+}
+
+/// The robot whose joints that the gait holds still are gone.
+fn locked(robot: &spec::Robot, gait: &spec::Gait) -> Result<spec::Robot, Unrunnable> {
+    robot.locked(&gait.locked).map_err(|tilted| Unrunnable::Tilted { joint: tilted.joint })
+}
+
+/// A structure with the tapes of all kernels, and the trait's methods that evaluate them. An input is `numbers` or a `number`.
+macro_rules! gait {
+    ($($name:ident $([$of:ident])? ($($input:ident: $kind:ident),*);)*) => {
+        struct Kernels {
+            $($name: Twins,)*
+        }
+
+        impl Kernels {
+            fn new(mut tapes: std::collections::BTreeMap<String, Twins>) -> Kernels {
+                Kernels { $($name: tapes.remove(stringify!($name)).unwrap_or_default(),)* }
+            }
+        }
+
+        impl Gait for Interpreted {
+            fn description(&self) -> &Description {
+                &self.description
+            }
+
+            fn levers(&self) -> &'static [Lever] {
+                self.levers.get_or_init(|| kept(levers(&self.robot, &self.gait).into_iter().map(lever).collect()))
+            }
+
+            fn latex(&self) -> &'static str {
+                self.latex.get_or_init(|| match mechanism(&self.robot, &self.gait) {
+                    Ok(mechanism) => text(&latex(&self.robot, &self.gait, &mechanism)),
+                    Err(_) => "",
+                })
+            }
+
+            fn whole(&self) -> Option<&'static dyn whole::Whole> {
+                let whole = self.whole.get_or_init(|| {
+                    let whole = Whole::new(&locked(&self.robot, &self.gait).ok()?).ok()?;
+                    Some(&kept(vec![whole])[0])
+                });
+                whole.map(|whole| whole as &dyn whole::Whole)
+            }
+
+            $(fn $name(&self, $($of: usize,)? $($input: gait!(type $kind),)* out: &mut [f64]) {
+                let which = 0 $(+ $of)?;
+                self.kernels.$name.evaluate(which, &[$(gait!(slice $kind $input)),*], out);
+            })*
+        }
+    };
+    (type numbers) => { &[f64] };
+    (type number) => { f64 };
+    (slice numbers $input:ident) => { $input };
+    (slice number $input:ident) => { std::slice::from_ref(&$input) };
+}
+
+gait! {
+    inertia(q: numbers);
+    bias(q: numbers, qd: numbers);
+    inertia_and_bias(q: numbers, qd: numbers);
+    energy(x: numbers, xd: numbers);
+    centre_of_mass(x: numbers, xd: numbers);
+    foot[leg](x: numbers);
+    foot_jacobian[leg](q: numbers);
+    foot_bias[leg](q: numbers, qd: numbers);
+    angular_momentum[leg](x: numbers, xd: numbers);
+    platform_velocity[leg](q: numbers, qd: numbers);
+    momentum_terms[leg](q: numbers, qd: numbers);
+    reduced[leg](q: numbers, qd: numbers);
+    forward[leg](q: numbers, qd: numbers, gamma: numbers);
+    inverse[leg](q: numbers, qd: numbers, actuated_dd: numbers);
+    momentum[leg](q: numbers, qd: numbers);
+    inverse_jacobian[leg](q: numbers, qd: numbers, actuated_dd: numbers);
+    placement[leg](q: numbers);
+    heights[leg](q: numbers);
+    swing_velocity[leg](q: numbers, qd: numbers);
+    early[leg](actuated: numbers, actuated_d: numbers);
+    late[leg](early: numbers, beta: number);
+    late_gradient[leg](early: numbers, beta: number);
+    impact[leg](q: numbers, xd: numbers);
+    touchdown[leg](q: numbers, qd: numbers);
+    curvature[leg](q: numbers, qd: numbers, qdd: numbers, n: numbers, phi: numbers, others: numbers);
+    heights_curvature[leg](q: numbers, weights: numbers);
+    touchdown_curvature[leg](q: numbers, qd: numbers, xi: numbers, outputs: numbers);
+    sharing[leg](q: numbers, qd: numbers, qdd: numbers);
+    sharing_curvature[leg](q: numbers, qd: numbers, qdd: numbers, weights: numbers);
+    impact_both(q: numbers, xd: numbers);
+}
+
+fn lever(lever: piaffe_codegen::mechanism::Lever) -> Lever {
+    Lever {
+        name: text(&lever.name),
+        numbers: kept(lever.numbers.iter().map(|name| text(name)).collect()),
+        unit: lever.unit,
+        value: lever.value + 0.0,
+        slopes: kept(lever.slopes),
+    }
+}

@@ -1,0 +1,19 @@
+//! Gaits of a specification as it stands, without a compiler.
+//!
+//! `piaffe_codegen` derives the dynamics of a gait as programs, which a build writes as Rust. Here the same programs are lists of
+//! operations that are evaluated: an [`Interpreted`] gait has the bits of the built one.
+
+#![forbid(unsafe_code)]
+
+mod description;
+mod gait;
+mod kept;
+mod robot;
+mod shapes;
+mod tape;
+mod twins;
+mod whole;
+
+pub use gait::Interpreted;
+pub use robot::{Robot, Unloadable};
+pub use tape::{Tape, Unrunnable};

@@ -1,0 +1,83 @@
+//! A robot by its files: `robot.toml` and `gaits/*.toml`.
+
+use super::gait::Interpreted;
+use super::tape::Unrunnable;
+use piaffe_codegen::{RobotFiles, Specified, specified};
+use std::path::Path;
+
+/// A robot as its files describe it; nothing has been derived yet.
+#[derive(Clone, Debug)]
+pub struct Robot {
+    files: RobotFiles,
+    specified: Specified,
+}
+
+/// Why there is no such robot, or no such gait of it.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Unloadable {
+    /// As a build says it: every mistake with its place and what to write instead.
+    #[error("{0}")]
+    Specification(String),
+    #[error("the robot has no gait `{gait}`; it has {known}")]
+    NoGait { gait: String, known: String },
+    #[error("the {gait} cannot be derived with these numbers: {why}")]
+    Gait { gait: String, why: Unrunnable },
+}
+
+impl Robot {
+    /// The robot of a folder.
+    ///
+    /// # Errors
+    /// What is missing, cannot be read, or is wrong with the specification.
+    pub fn read(folder: impl AsRef<Path>) -> Result<Robot, Unloadable> {
+        let files = RobotFiles::read(folder.as_ref()).map_err(Unloadable::Specification)?;
+        Robot::new(RobotFiles { module: String::new(), ..files })
+    }
+
+    /// The robot of these files.
+    ///
+    /// # Errors
+    /// What is wrong with the specification.
+    pub fn new(files: RobotFiles) -> Result<Robot, Unloadable> {
+        let mut robots = specified(std::slice::from_ref(&files)).map_err(Unloadable::Specification)?;
+        let specified = robots.pop().ok_or_else(|| Unloadable::Specification("there is no robot".into()))?;
+        Ok(Robot { files, specified })
+    }
+
+    /// The robot with another number where this one stands in its files: `links.thigh.mass`, `limits.friction`.
+    ///
+    /// # Errors
+    /// If there is no such number, or it cannot be this one.
+    pub fn with(&self, name: &str, value: f64) -> Result<Robot, Unloadable> {
+        let mut files = self.files.clone();
+        files.set(name, value).map_err(Unloadable::Specification)?;
+        Robot::new(files)
+    }
+
+    /// Its files, with the numbers that were changed.
+    pub fn files(&self) -> &RobotFiles {
+        &self.files
+    }
+
+    /// Names of its gaits, behind that of its module if it has one.
+    pub fn gaits(&self) -> Vec<String> {
+        self.specified.gaits.iter().map(|gait| self.key(&gait.name)).collect()
+    }
+
+    fn key(&self, gait: &str) -> String {
+        let module = &self.files.module;
+        if module.is_empty() { gait.into() } else { format!("{module}/{gait}") }
+    }
+
+    /// Derives a gait.
+    ///
+    /// # Errors
+    /// If there is none of this name, or the robot's numbers make some that are none.
+    pub fn gait(&self, name: &str) -> Result<Interpreted, Unloadable> {
+        let found = self.specified.gaits.iter().find(|gait| self.key(&gait.name) == name);
+        let gait =
+            found.ok_or_else(|| Unloadable::NoGait { gait: name.into(), known: self.gaits().join(", ") })?;
+        Interpreted::new(&self.specified.robot, gait, name)
+            .map_err(|why| Unloadable::Gait { gait: name.into(), why })
+    }
+}

@@ -1,0 +1,68 @@
+//! The whole robot that the virtual legs stand for.
+
+use super::description::body;
+use super::kept::{kept, text};
+use super::shapes::Shapes;
+use super::tape::Unrunnable;
+use super::twins::{Twins, tapes};
+use piaffe_codegen::dynamics::whole_kernels;
+use piaffe_codegen::mechanism;
+use piaffe_codegen::program::programs;
+use piaffe_codegen::spec::Robot;
+use piaffe_model::whole::{self, Description, Joint, Leg};
+
+pub struct Whole {
+    description: &'static Description,
+    inertia_and_bias: Twins,
+    feet: Twins,
+    feet_bias: Twins,
+}
+
+impl Whole {
+    /// Of a robot whose locked joints are gone.
+    pub fn new(robot: &Robot) -> Result<Whole, Unrunnable> {
+        let whole = mechanism::Whole::new(robot);
+        let (ring, kernels) = whole_kernels(&whole);
+        let shapes = Shapes::new(&kernels);
+        let mut tapes = tapes(&kernels, &programs(&ring, &kernels))?;
+        let mut tape = |name| tapes.remove(name).unwrap_or_default();
+        let joint = |j: &mechanism::WholeJoint| Joint { name: text(&j.name), rotor_inertia: j.rotor_inertia };
+        let leg = |l: &mechanism::WholeLeg| Leg {
+            name: text(&l.name),
+            joints: l.joints.clone(),
+            foot_body: l.foot_body,
+            foot: l.foot.map(|x| x + 0.0),
+        };
+        Ok(Whole {
+            description: &kept(vec![Description {
+                robot: text(&whole.robot),
+                gravity: whole.gravity,
+                bodies: kept(whole.bodies.iter().map(body).collect()),
+                joints: kept(whole.joints.iter().map(joint).collect()),
+                legs: kept(whole.legs.iter().map(leg).collect()),
+                shapes: &kept(vec![whole::Shapes::named("", &|name| shapes.block(name))])[0],
+            }])[0],
+            inertia_and_bias: tape("inertia_and_bias"),
+            feet: tape("feet"),
+            feet_bias: tape("feet_bias"),
+        })
+    }
+}
+
+impl whole::Whole for Whole {
+    fn description(&self) -> &'static Description {
+        self.description
+    }
+
+    fn inertia_and_bias(&self, up: &[f64], omega: &[f64], q: &[f64], qd: &[f64], out: &mut [f64]) {
+        self.inertia_and_bias.evaluate(0, &[up, omega, q, qd], out);
+    }
+
+    fn feet(&self, q: &[f64], out: &mut [f64]) {
+        self.feet.evaluate(0, &[q], out);
+    }
+
+    fn feet_bias(&self, omega: &[f64], q: &[f64], qd: &[f64], out: &mut [f64]) {
+        self.feet_bias.evaluate(0, &[omega, q, qd], out);
+    }
+}
