@@ -53,7 +53,8 @@ pub fn unknown<'t>(name: &str, texts: impl IntoIterator<Item = &'t str>) -> Stri
     // Those that stand in the same table, if it is one.
     let table = name.rsplit_once('.').map_or(String::new(), |(table, _)| format!("{table}."));
     let beside: Vec<String> = known.iter().filter(|known| known.starts_with(&table)).cloned().collect();
-    let (whose, list) = if beside.is_empty() || table.is_empty() { ("there are", known) } else { ("beside it are", beside) };
+    let (whose, list) =
+        if beside.is_empty() || table.is_empty() { ("there are", known) } else { ("beside it are", beside) };
     let more = if list.len() > SHOWN { format!(" and {} more", list.len() - SHOWN) } else { String::new() };
     format!("there is no number `{name}`; {whose} {}{more}", list[..list.len().min(SHOWN)].join(", "))
 }
@@ -140,7 +141,9 @@ mod tests {
     #[test]
     fn names_that_are_none_lead_to_those_that_are() {
         assert!(unknown("links.thigh.mas", [ROBOT]).ends_with("did you mean `links.thigh.mass`?"));
-        assert!(unknown("links.thigh.temperature", [ROBOT]).contains("beside it are links.thigh.com.x, links.thigh.com.y"));
+        assert!(
+            unknown("links.thigh.temperature", [ROBOT]).contains("beside it are links.thigh.com.x, links.thigh.com.y")
+        );
         assert!(unknown("zzzzzz", [ROBOT]).contains("there are gravity, joints.knee.range.lower"));
     }
 }

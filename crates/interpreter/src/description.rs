@@ -4,7 +4,7 @@ use super::kept::{kept, text};
 use super::shapes::Shapes;
 use piaffe_codegen::dynamics::Kernel;
 use piaffe_codegen::mechanism::{self, Mechanism, points};
-use piaffe_codegen::program::{Program, Operations as Count};
+use piaffe_codegen::program::{Operations as Count, Program};
 use piaffe_codegen::spec;
 use piaffe_model::{
     Body, Description, HalfSteps, Joint, Leg, Limits, Member, Operations, Point, Rotation, Spot, shape,
@@ -12,7 +12,13 @@ use piaffe_model::{
 use std::borrow::Cow;
 
 /// The description of a gait with the name `key`. `lowest` tells which of the mechanism's points can be the lowest.
-pub fn description(m: &Mechanism, key: &str, lowest: &[usize], kernels: &[Kernel], programs: &[(Program, Count)]) -> Description {
+pub fn description(
+    m: &Mechanism,
+    key: &str,
+    lowest: &[usize],
+    kernels: &[Kernel],
+    programs: &[(Program, Count)],
+) -> Description {
     let shapes = Shapes::new(kernels);
     let early = [0, 1].map(|leg| {
         let name = format!("early{}", leg + 1);

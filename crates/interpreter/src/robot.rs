@@ -75,9 +75,7 @@ impl Robot {
     /// If there is none of this name, or the robot's numbers make some that are none.
     pub fn gait(&self, name: &str) -> Result<Interpreted, Unloadable> {
         let found = self.specified.gaits.iter().find(|gait| self.key(&gait.name) == name);
-        let gait =
-            found.ok_or_else(|| Unloadable::NoGait { gait: name.into(), known: self.gaits().join(", ") })?;
-        Interpreted::new(&self.specified.robot, gait, name)
-            .map_err(|why| Unloadable::Gait { gait: name.into(), why })
+        let gait = found.ok_or_else(|| Unloadable::NoGait { gait: name.into(), known: self.gaits().join(", ") })?;
+        Interpreted::new(&self.specified.robot, gait, name).map_err(|why| Unloadable::Gait { gait: name.into(), why })
     }
 }
