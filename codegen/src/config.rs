@@ -276,11 +276,14 @@ pub fn specified(robots: &[RobotFiles]) -> Result<Vec<Specified>, String> {
 /// The rendered diagnostics, if the specification has mistakes.
 pub fn generate(robots: &[RobotFiles], runtime: Option<&str>) -> Result<Vec<Generated>, String> {
     let parsed = parse(robots)?;
-    let gait_file = |robot: &Parsed, gait: &Gait, origin: &str| {
+    let gait_file = |robot: &Parsed, gait: &Gait, file: &SpecFile| {
+        let files = [&robot.files.robot, file];
+        let (specification, origin) = (files.map(|file| file.text.as_str()), origin(&files));
         let (module, mechanism) = (&robot.files.module, Mechanism::new(&locked(&robot.spec, &gait.locked)?, gait));
         let beside = || (levers(&robot.spec, gait), latex(&robot.spec, gait, &mechanism));
         let whole = robot.wholes().iter().position(|angles| **angles == gait.locked).unwrap_or_default();
-        let source = emit::gait_source(&mechanism, beside, module, &emit::whole_module(whole), runtime, origin);
+        let source =
+            emit::gait_source(&mechanism, beside, module, &emit::whole_module(whole), specification, runtime, &origin);
         Ok((emit::file_name(module, &gait.name), source.map_err(|e| robot.cannot_write(&gait.name, &e))?))
     };
     let whole_file = |robot: &Parsed, number: usize, angles: &Angles| {
@@ -318,10 +321,11 @@ pub fn generate_families(
     let select =
         |robot: &Parsed| select(&robot.spec, parameters).map_err(|e| format!("{}: {e}", robot.files.robot.path));
     let chosen = parsed.iter().map(select).collect::<Result<Vec<_>, _>>()?;
-    let file = |robot: &Parsed, gait: &Gait, origin: &str| {
+    let file = |robot: &Parsed, gait: &Gait, file: &SpecFile| {
+        let origin = origin(&[&robot.files.robot, file]);
         let family = Family::new(&robot.spec, gait, select(robot)?)?;
         let latex = latex(&robot.spec, gait, &family.mechanism);
-        let source = emit::family_source(&family, &robot.files.module, &latex, runtime, origin);
+        let source = emit::family_source(&family, &robot.files.module, &latex, runtime, &origin);
         let source = source.map_err(|e| robot.cannot_write(&gait.name, &e))?;
         Ok((emit::family_file_name(&robot.files.module, &gait.name), source))
     };
@@ -337,20 +341,18 @@ fn math() -> Generated {
     (emit::MATH_FILE.into(), emit::MATH.into())
 }
 
-/// A robot with its gaits and the headers of their generated files.
+/// A robot with its gaits and their files.
 struct Parsed<'f> {
     files: &'f RobotFiles,
     source: Source,
     spec: Robot,
-    gaits: Vec<(Gait, String)>,
-    /// The gaits' files.
-    sources: Vec<Source>,
+    gaits: Vec<(Gait, &'f SpecFile)>,
 }
 
 impl Parsed<'_> {
     fn named(&self) -> Named<'_> {
-        let names = self.gaits.iter().map(|(gait, _)| gait.name.as_str());
-        let gaits = names.zip(self.sources.iter().cloned()).collect();
+        let gaits = self.gaits.iter().map(|(gait, file)| (gait.name.as_str(), Source::new(&file.path, &file.text)));
+        let gaits = gaits.collect();
         Named { folder: &self.files.module, file: &self.source, gaits }
     }
 
@@ -389,17 +391,14 @@ fn parse(robots: &[RobotFiles]) -> Result<Vec<Parsed<'_>>, String> {
                 continue;
             }
         };
-        let (mut gaits, mut sources) = (Vec::new(), Vec::new());
+        let mut gaits = Vec::new();
         for file in &files.gaits {
             match spec::parse_gait(&file.path, &file.text, &robot) {
-                Ok(gait) => {
-                    gaits.push((gait, origin(&[&files.robot, file])));
-                    sources.push(Source::new(&file.path, &file.text));
-                }
+                Ok(gait) => gaits.push((gait, file)),
                 Err(e) => mistakes.extend(e),
             }
         }
-        parsed.push(Parsed { files, source: robot.source().clone(), spec: robot.robot, gaits, sources });
+        parsed.push(Parsed { files, source: robot.source().clone(), spec: robot.robot, gaits });
     }
     mistakes.extend(modules::mistakes(&parsed.iter().map(Parsed::named).collect::<Vec<_>>()));
     if !mistakes.is_empty() {
@@ -413,10 +412,10 @@ type Job<'j> = Box<dyn FnOnce() -> Result<Generated, String> + Send + 'j>;
 
 fn for_each_gait<'j>(
     robots: &'j [Parsed],
-    file: &'j (impl Fn(&Parsed, &Gait, &str) -> Result<Generated, String> + Sync),
+    file: &'j (impl Fn(&Parsed, &Gait, &SpecFile) -> Result<Generated, String> + Sync),
 ) -> Vec<Job<'j>> {
-    let gaits = robots.iter().flat_map(|robot| robot.gaits.iter().map(move |(gait, origin)| (robot, gait, origin)));
-    gaits.map(|(robot, gait, origin)| Box::new(move || file(robot, gait, origin)) as Job).collect()
+    let gaits = robots.iter().flat_map(|robot| robot.gaits.iter().map(move |(gait, own)| (robot, gait, own)));
+    gaits.map(|(robot, gait, own)| Box::new(move || file(robot, gait, own)) as Job).collect()
 }
 
 /// The files, in order; the first mistake if there is any.

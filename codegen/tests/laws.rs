@@ -224,7 +224,8 @@ fn kernels_are_straight_lines() {
 fn kernels_of_flight_are_straight_lines() {
     for gait in GAITS {
         let mechanism = in_all_modes(gait);
-        let source = gait_source(&mechanism, || (Vec::new(), String::new()), "", "whole", None, "flight").unwrap();
+        let source =
+            gait_source(&mechanism, || (Vec::new(), String::new()), "", "whole", [""; 2], None, "flight").unwrap();
         let mut law = Law::default();
         law.visit_file(&syn::parse_file(&source).unwrap());
         assert!(law.broken.is_empty(), "{gait}: {:?}", law.broken);
@@ -331,7 +332,7 @@ fn what_cannot_be_code_is_said() {
         change(&mut mechanism);
         let lever = Lever { name: "a".into(), numbers: Vec::new(), unit: "", value, slopes: Vec::new() };
         let beside = || (vec![lever], String::new());
-        gait_source(&mechanism, beside, "", "whole", Some("crate::model"), "here").unwrap_err().to_string()
+        gait_source(&mechanism, beside, "", "whole", [""; 2], Some("crate::model"), "here").unwrap_err().to_string()
     };
     let names: [Change; 3] = [|m| m.gait = "self".into(), |m| m.gait = "1".into(), |m| m.gait.clear()];
     for change in names {

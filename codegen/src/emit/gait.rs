@@ -13,8 +13,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use syn::Path;
 
 /// Source of one gait's module, of a robot with or without a module of its own; `whole` is the module of the whole
-/// robot. `beside` gives the gait's levers and its closed forms as LaTeX, `runtime` is the path of the module with the
-/// `Gait` trait; without it there are functions only.
+/// robot. `beside` gives the gait's levers and its closed forms as LaTeX, `specification` are the texts of the robot's file
+/// and the gait's, `runtime` is the path of the module with the `Gait` trait; without it there are functions only.
 ///
 /// # Errors
 /// If a name or a number of it cannot be one in Rust.
@@ -23,6 +23,7 @@ pub fn gait_source(
     beside: impl FnOnce() -> (Vec<Lever>, String) + Send,
     robot: &str,
     whole: &str,
+    specification: [&str; 2],
     runtime: Option<&str>,
     origin: &str,
 ) -> Written<String> {
@@ -34,7 +35,15 @@ pub fn gait_source(
     if let Some(runtime) = runtime {
         let (key, runtime) = (key(robot, &mechanism.gait), path(runtime)?);
         let description = description(mechanism, &key, &lowest, &functions, &runtime)?;
-        source += &print(implementation(mechanism, description, &levers, whole, &functions, &latex, &runtime)?)?;
+        source += &print(implementation(
+            mechanism,
+            description,
+            (&levers, &latex),
+            specification,
+            whole,
+            &functions,
+            &runtime,
+        )?)?;
     }
     Ok(source)
 }
@@ -71,10 +80,10 @@ pub(super) fn items(functions: &[Function]) -> Written<String> {
 fn implementation(
     m: &Mechanism,
     description: TokenStream,
-    levers: &[Lever],
+    (levers, latex): (&[Lever], &str),
+    [robot_file, gait_file]: [&str; 2],
     whole: &str,
     functions: &[Function],
-    latex: &str,
     runtime: &Path,
 ) -> Written<TokenStream> {
     let (name, whole) = (ident(&type_name(&m.gait))?, ident(whole)?);
@@ -89,9 +98,19 @@ fn implementation(
         /// What the gait is made of, in numbers.
         pub static DESCRIPTION: #runtime::Description = #description;
 
+        /// What it was derived from.
+        pub static SPECIFICATION: #runtime::Specification = #runtime::Specification {
+            robot: std::borrow::Cow::Borrowed(#robot_file),
+            gait: std::borrow::Cow::Borrowed(#gait_file),
+        };
+
         impl #runtime::Gait for #name {
             fn description(&self) -> &#runtime::Description {
                 &DESCRIPTION
+            }
+
+            fn specification(&self) -> Option<&#runtime::Specification> {
+                Some(&SPECIFICATION)
             }
 
             fn latex(&self) -> &'static str {

@@ -10,7 +10,7 @@ use piaffe_codegen::mechanism::{Mechanism, levers};
 use piaffe_codegen::program::programs;
 use piaffe_codegen::spec;
 use piaffe_codegen::typeset::latex;
-use piaffe_model::{Description, Gait, Lever, whole};
+use piaffe_model::{Description, Gait, Lever, Specification, whole};
 use std::sync::OnceLock;
 
 /// A gait of a specification, derived when it was loaded: what a build would make of it, with the same bits.
@@ -20,6 +20,7 @@ use std::sync::OnceLock;
 pub struct Interpreted {
     robot: spec::Robot,
     gait: spec::Gait,
+    specification: Specification,
     description: Description,
     kernels: Kernels,
     whole: OnceLock<Option<&'static Whole>>,
@@ -28,11 +29,16 @@ pub struct Interpreted {
 }
 
 impl Interpreted {
-    /// The gait of a robot, both validated, under the name `key`.
+    /// The gait of a robot, both validated and read from `specification`, under the name `key`.
     ///
     /// # Errors
     /// If the numbers of the robot make some that are none, or a kernel is too large.
-    pub fn new(robot: &spec::Robot, gait: &spec::Gait, key: &str) -> Result<Interpreted, Unrunnable> {
+    pub fn new(
+        robot: &spec::Robot,
+        gait: &spec::Gait,
+        specification: Specification,
+        key: &str,
+    ) -> Result<Interpreted, Unrunnable> {
         let mechanism = mechanism(robot, gait)?;
         let (mut model, derived) = kernels(&mechanism);
         let lowest = lowest(&mut model);
@@ -40,6 +46,7 @@ impl Interpreted {
         Ok(Interpreted {
             robot: robot.clone(),
             gait: gait.clone(),
+            specification,
             description: description(&mechanism, key, &lowest, &derived, &programs),
             kernels: Kernels::new(tapes(&derived, &programs)?),
             whole: OnceLock::new(),
@@ -74,6 +81,10 @@ macro_rules! gait {
         impl Gait for Interpreted {
             fn description(&self) -> &Description {
                 &self.description
+            }
+
+            fn specification(&self) -> Option<&Specification> {
+                Some(&self.specification)
             }
 
             fn levers(&self) -> &'static [Lever] {

@@ -2,7 +2,8 @@
 
 use super::gait::Interpreted;
 use super::tape::Unrunnable;
-use piaffe_codegen::{RobotFiles, Specified, specified};
+use piaffe_codegen::{RobotFiles, SpecFile, Specified, specified};
+use piaffe_model::Specification;
 use std::path::Path;
 
 /// A robot as its files describe it; nothing has been derived yet.
@@ -54,6 +55,18 @@ impl Robot {
         Robot::new(files)
     }
 
+    /// The gait that a result carries with it, under its name there.
+    ///
+    /// # Errors
+    /// What is wrong with the specification, or that it is of another gait.
+    pub fn carried(specification: &Specification, key: &str) -> Result<Interpreted, Unloadable> {
+        let (module, gait) = key.rsplit_once('/').unwrap_or(("", key));
+        let file = |path: String, text: &str| SpecFile { path, text: text.into() };
+        let robot = file("robot.toml".into(), &specification.robot);
+        let gaits = vec![file(format!("{gait}.toml"), &specification.gait)];
+        Robot::new(RobotFiles { module: module.into(), robot, gaits })?.gait(key)
+    }
+
     /// Its files, with the numbers that were changed.
     pub fn files(&self) -> &RobotFiles {
         &self.files
@@ -74,8 +87,12 @@ impl Robot {
     /// # Errors
     /// If there is none of this name, or the robot's numbers make some that are none.
     pub fn gait(&self, name: &str) -> Result<Interpreted, Unloadable> {
-        let found = self.specified.gaits.iter().find(|gait| self.key(&gait.name) == name);
-        let gait = found.ok_or_else(|| Unloadable::NoGait { gait: name.into(), known: self.gaits().join(", ") })?;
-        Interpreted::new(&self.specified.robot, gait, name).map_err(|why| Unloadable::Gait { gait: name.into(), why })
+        let found = self.specified.gaits.iter().zip(&self.files.gaits).find(|(gait, _)| self.key(&gait.name) == name);
+        let (gait, file) =
+            found.ok_or_else(|| Unloadable::NoGait { gait: name.into(), known: self.gaits().join(", ") })?;
+        let text = |file: &SpecFile| file.text.clone().into();
+        let specification = Specification { robot: text(&self.files.robot), gait: text(file) };
+        Interpreted::new(&self.specified.robot, gait, specification, name)
+            .map_err(|why| Unloadable::Gait { gait: name.into(), why })
     }
 }

@@ -12,12 +12,14 @@ pub mod limit;
 pub mod motion;
 mod numbers;
 pub mod shape;
+mod specification;
 pub mod units;
 pub mod whole;
 
 use crate::motion::Costs;
 pub use limit::Limit;
 pub use numbers::Lever;
+pub use specification::Specification;
 use std::borrow::Cow;
 
 /// What a gait is made of, in numbers.
@@ -328,6 +330,10 @@ pub fn hash(text: &str) -> u64 {
 #[allow(clippy::too_many_arguments)]
 pub trait Gait: Sync {
     fn description(&self) -> &Description;
+    /// What it was derived from; of families nothing, since their members have numbers of their own.
+    fn specification(&self) -> Option<&Specification> {
+        None
+    }
     /// The numbers of the specification on which the gait depends; of families none, since they have parameters.
     fn levers(&self) -> &'static [Lever] {
         &[]

@@ -2,7 +2,7 @@
 
 use crate::constraints::sharing::obstacle;
 use piaffe_model::whole::Whole;
-use piaffe_model::{Description, Gait, Lever};
+use piaffe_model::{Description, Gait, Lever, Specification};
 
 /// The generated dynamics of a gait under another description.
 pub struct Altered<'a> {
@@ -56,6 +56,11 @@ macro_rules! delegate {
 impl Gait for Altered<'_> {
     fn description(&self) -> &Description {
         &self.description
+    }
+
+    /// Without what is altered.
+    fn specification(&self) -> Option<&Specification> {
+        self.gait.specification()
     }
 
     /// Of other limits than the specification's none is known.

@@ -16,7 +16,8 @@ const RELATIVE: f64 = 1e-9;
 const ABSOLUTE: f64 = 1e-13;
 
 /// What is asked of a result: it is what the rest is derived from.
-const GIVEN: [&str; 6] = ["gait", "criterion", "speed", "variables", "fingerprint", "limits_at_real_legs"];
+const GIVEN: [&str; 7] =
+    ["gait", "criterion", "speed", "variables", "fingerprint", "specification", "limits_at_real_legs"];
 /// How it was found. That says nothing about the motion, and cannot be seen from it.
 const HISTORY: [&str; 7] =
     ["local_optima", "virtual_cost", "conflicts", "nearest_speed", "search", "seconds", "version"];

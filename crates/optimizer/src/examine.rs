@@ -8,11 +8,12 @@ use crate::stability::stability;
 use piaffe_model::Gait;
 
 impl GaitResult {
-    /// Examines the motion and adds what is found; one that is no optimum is left as it is.
+    /// Adds what the gait was derived from, and what is found about the motion if it is an optimum.
     ///
     /// Each entry follows from the description and the motion alone. What cannot be derived, or has a number
     /// that is none, stays absent, and [`GaitResult::not_examined`] says so.
     pub fn examine(&mut self, gait: &dyn Gait) {
+        self.specification = gait.specification().cloned();
         let Some(motion) = self.motion() else { return };
         self.stability = stability(gait, &motion).ok().filter(is_finite);
         self.real_legs = RealLegs::new(gait, &motion).ok().filter(is_finite);

@@ -25,12 +25,14 @@ pub fn gait_of<'a>(result: &GaitResult, gaits: &[&'a dyn Gait]) -> Result<&'a dy
         let known = gaits.iter().map(|g| g.description().key).collect::<Vec<_>>().join(", ");
         return Err(Foreign::UnknownGait { gait: result.gait.clone(), known });
     }
-    let fingerprint = |d: &Description| {
-        let limits = Limits { real_legs: result.limits_at_real_legs, ..d.limits.clone() };
-        Description { limits, ..d.clone() }.fingerprint()
-    };
-    let same = candidates.find(|g| fingerprint(g.description()) == result.fingerprint);
+    let same = candidates.find(|g| is_of(result, g.description()));
     same.copied().ok_or_else(|| Foreign::OtherRobot { name: result.name() })
+}
+
+/// Whether a result is of this robot and gait.
+pub fn is_of(result: &GaitResult, d: &Description) -> bool {
+    let limits = Limits { real_legs: result.limits_at_real_legs, ..d.limits.clone() };
+    result.gait == d.key && Description { limits, ..d.clone() }.fingerprint() == result.fingerprint
 }
 
 /// Does something with the gait of a result under the limits that were asked for.

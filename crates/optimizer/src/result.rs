@@ -9,8 +9,8 @@ use crate::search::multi_start::Found;
 use crate::sensitivity::Sensitivities;
 use crate::stability::Stability;
 use crate::verdict::{self, Verdict};
-use piaffe_model::Gait;
 use piaffe_model::motion::{Costs, Criterion, HalfStep, Motion};
+use piaffe_model::{Gait, Specification};
 use piaffe_sqp as sqp;
 use piaffe_verify::certificate::Certificate;
 use piaffe_verify::{Finding, JointPeak, VerifyError, verify};
@@ -116,6 +116,9 @@ pub struct GaitResult {
     pub search: SearchEntry,
     /// Of the robot and gait as built: results of another robot are not comparable.
     pub fingerprint: String,
+    /// What robot and gait were derived from. With it any machine can derive anew what is stated here.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub specification: Option<Specification>,
     /// Wall time of search and receipt.
     pub seconds: f64,
     pub version: String,
@@ -265,6 +268,7 @@ impl GaitResult {
             local_optima: Vec::new(),
             search,
             fingerprint: d.fingerprint(),
+            specification: None,
             seconds: 0.0,
             version: env!("CARGO_PKG_VERSION").into(),
         }
