@@ -1,16 +1,15 @@
-//! Which specification this program answers for: the one that it was built from, whatever became of the files since.
+//! What this program was built with, and what became of the files since.
 
-use super::output;
+use piaffe_codegen::RobotFiles;
 use piaffe_model::Gait;
 use sha2::{Digest, Sha256};
-use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::OnceLock;
 
 /// What a build knows: the robots' gaits, and the specification that they come from.
 #[derive(Clone, Copy)]
 pub struct Build {
-    /// The generated gaits; the command line needs at least one.
+    /// The generated gaits.
     pub gaits: &'static [&'static dyn Gait],
     /// The folder of the specification, from the package's root.
     pub folder: &'static str,
@@ -42,46 +41,13 @@ pub fn module_of(folder: &Path) -> std::io::Result<String> {
     Ok(if Path::new(build().folder).file_name() == absolute.file_name() { String::new() } else { name })
 }
 
-/// Files that are named.
-const SHOWN: usize = 3;
-
-/// Says what differs, where the folder of the specification is here: of the robots of these gaits.
-pub fn note_of(gaits: &[&dyn Gait]) {
-    let modules: BTreeSet<&str> = gaits.iter().map(|g| module(g.description().key)).collect();
-    note(|file| modules.contains(robot_of(file)));
-}
-
-/// The same of all robots.
-pub fn note_of_all() {
-    note(|_| true);
-}
-
-fn note(concerns: impl Fn(&str) -> bool) {
-    let differences: Vec<(String, &str)> =
-        differences(Path::new(".")).into_iter().filter(|(file, _)| concerns(file)).collect();
-    let Some((first, _)) = differences.first() else { return };
-    let robot = robot_of(first);
-    let whose = match gaits().iter().map(|g| g.description()).find(|d| module(d.key) == robot) {
-        Some(d) if differences.iter().all(|(file, _)| robot_of(file) == robot) => format!("the robot {}", d.robot),
-        _ => "the robots".into(),
-    };
-    let mut which: Vec<String> = differences.iter().take(SHOWN).map(|(file, how)| format!("{file} {how}")).collect();
-    if differences.len() > SHOWN {
-        which.push(format!("and {} more", differences.len() - SHOWN));
-    }
-    output::note(&format!(
-        "this program answers for {whose} as it was built, but {}: `cargo build` brings it up to date",
-        which.join(", ")
-    ));
-}
-
 /// The robot's part of a gait's key; empty for the robot that needs no name.
-fn module(key: &str) -> &str {
+pub fn module(key: &str) -> &str {
     key.split_once('/').map_or("", |(robot, _)| robot)
 }
 
 /// The same of a file's path in the specification.
-fn robot_of(file: &str) -> &str {
+fn module_of_file(file: &str) -> &str {
     let inside = file.strip_prefix(build().folder).unwrap_or(file).trim_start_matches('/');
     match inside.split_once('/') {
         Some((robot, _)) if robot != "gaits" => robot,
@@ -89,29 +55,48 @@ fn robot_of(file: &str) -> &str {
     }
 }
 
-/// Files of the specification that are not what they were when this program was built, and how they differ.
-fn differences(root: &Path) -> Vec<(String, &'static str)> {
-    let mut list = Vec::new();
-    let now = files(root);
+/// The files of a robot as they are now.
+///
+/// # Errors
+/// What is missing or cannot be read.
+pub fn files_of(module: &str) -> Result<RobotFiles, String> {
+    let folder = Path::new(build().folder);
+    // Joining nothing would end the path in a slash.
+    let folder = if module.is_empty() { folder.to_path_buf() } else { folder.join(module) };
+    Ok(RobotFiles { module: module.into(), ..RobotFiles::read(&folder)? })
+}
+
+/// A file of the specification that is not what it was when this program was built.
+#[derive(Clone, Debug)]
+pub struct Changed {
+    pub path: String,
+    /// The module of its robot.
+    pub module: String,
+    /// In words.
+    pub how: &'static str,
+}
+
+/// All of these, where the folder of the specification is here.
+pub fn changed() -> Vec<Changed> {
+    let now = files();
     if now.is_empty() {
-        return list;
+        return Vec::new();
     }
-    for (file, built) in build().files {
-        match std::fs::read(root.join(file)) {
-            Ok(text) if digest(&text) == *built => {}
-            Ok(_) => list.push((file.to_string(), "has changed")),
-            Err(_) => list.push((file.to_string(), "is gone")),
-        }
-    }
+    let changed = |path: &str, how| Changed { path: path.into(), module: module_of_file(path).into(), how };
+    let of_build = build().files.iter().filter_map(|(file, built)| match std::fs::read(file) {
+        Ok(text) if digest(&text) == *built => None,
+        Ok(_) => Some(changed(file, "has changed")),
+        Err(_) => Some(changed(file, "is gone")),
+    });
     let known = |file: &String| build().files.iter().any(|(known, _)| known == file);
-    list.extend(now.into_iter().filter(|file| !known(file)).map(|file| (file, "is new")));
-    list
+    let new = now.iter().filter(|file| !known(file)).map(|file| changed(file, "is new"));
+    of_build.chain(new).collect()
 }
 
 /// What a build would read now.
-fn files(root: &Path) -> Vec<String> {
+fn files() -> Vec<String> {
     let names = |folder: &str| -> Vec<String> {
-        let entries = std::fs::read_dir(root.join(folder)).into_iter().flatten().flatten();
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
         let mut names: Vec<String> = entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
         names.sort();
         names
@@ -122,7 +107,7 @@ fn files(root: &Path) -> Vec<String> {
     let mut files = Vec::new();
     for folder in folders {
         let robot = format!("{folder}/robot.toml");
-        if root.join(&robot).exists() {
+        if Path::new(&robot).exists() {
             files.push(robot);
             let gaits = names(&format!("{folder}/gaits")).into_iter().filter(|name| name.ends_with(".toml"));
             files.extend(gaits.map(|name| format!("{folder}/gaits/{name}")));

@@ -1,7 +1,8 @@
 //! What a file holds: a result, several of them, or what a sweep says of its results.
 
-use super::input;
-use anyhow::{Context, bail};
+use super::{input, robots};
+use anyhow::{Context, anyhow, bail};
+use piaffe_optimizer::readback::Readback;
 use piaffe_optimizer::result::GaitResult;
 use piaffe_report::overview::Overview;
 use serde::de::DeserializeOwned;
@@ -67,7 +68,7 @@ pub fn read(file: &Path) -> anyhow::Result<Document> {
 ///
 /// # Errors
 /// If it cannot be read, or is not the only one.
-pub fn read_result(file: &Path) -> anyhow::Result<GaitResult> {
+fn read_result(file: &Path) -> anyhow::Result<GaitResult> {
     match read(file)? {
         Document::Sweep(sweep) => {
             bail!("{} is a sweep's overview: give one of the results beside it", sweep.name)
@@ -77,6 +78,16 @@ pub fn read_result(file: &Path) -> anyhow::Result<GaitResult> {
             (_, more) => bail!("{} holds {} results: give one of them", input::name(file), more + 1),
         },
     }
+}
+
+/// The one result in a file, derived anew.
+///
+/// # Errors
+/// If it cannot be read, is of no gait that can be had, or states what its motion does not do.
+pub fn readback(file: &Path) -> anyhow::Result<Readback<'static>> {
+    let result = read_result(file)?;
+    let gait = robots::of(&result).map_err(|why| anyhow!("{why}"))?;
+    Ok(Readback::new(result, &[gait])?)
 }
 
 /// The files in a folder that may hold results: all JSON.

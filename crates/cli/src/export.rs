@@ -1,7 +1,6 @@
 //! `piaffe export`: a result for other software.
 
-use super::built::gaits;
-use super::document::read_result;
+use super::document::readback;
 use super::output;
 use clap::ValueEnum;
 use piaffe_export::{controller, mjcf, npz, table, urdf};
@@ -26,7 +25,7 @@ pub enum Format {
 
 /// Writes the result in `file` (`-`: standard input) to `out` (`-`: standard output); tables at `rate` per second.
 pub fn run(file: &Path, format: Format, rate: f64, out: &str) -> anyhow::Result<bool> {
-    let Readback { gait, motion, .. } = Readback::new(read_result(file)?, gaits())?;
+    let Readback { gait, motion, .. } = readback(file)?;
     let contents = match format {
         Format::Csv => table::csv(&Walk::at_rate(gait, &motion, rate)?).into_bytes(),
         Format::Npz => npz::npz(&Walk::at_rate(gait, &motion, rate)?)?,

@@ -19,18 +19,20 @@ mod model;
 mod optimize;
 mod output;
 mod report;
+mod robots;
 mod summary;
 mod sweep;
 mod verify;
 mod whole;
 
 pub use built::Build;
-use clap::builder::PossibleValuesParser;
+use clap::builder::{PossibleValuesParser, ValueParser};
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
-use piaffe_model::Gait;
 use piaffe_model::motion::Criterion;
 use piaffe_optimizer::search::local::Task;
+use piaffe_optimizer::search::multi_start::Settings;
+use robots::{Setting, by_name};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -44,12 +46,13 @@ const NOT_CONFIRMED: u8 = 4;
     name = "piaffe",
     version,
     about = "Optimal gaits of a legged robot, each with a receipt",
-    long_about = "Optimal periodic gaits of the robots in model-spec/, each with a receipt.\n\n\
+    long_about = "Optimal periodic gaits of the robots in model-spec/, or of any robot (--robot), each with a receipt.\n\n\
                   Without a command: finds the optimum of every gait and criterion at 0.6 m/s, prints them\n\
                   beside the published values and writes the results to a folder.",
     after_help = "Examples:\n  \
                   piaffe                                             the main job; open results/index.html\n  \
                   piaffe optimize trot --speed 0.6 --json trot.json  one optimum\n  \
+                  piaffe optimize trot --speed 0.6 --robot dog       of another robot, without a compiler\n  \
                   piaffe report trot.json --out trot                 a page that shows it\n  \
                   piaffe export trot.json --format csv               its numbers over time\n  \
                   piaffe verify trot.json                            what it states, derived anew\n  \
@@ -64,6 +67,14 @@ struct Arguments {
     /// Folder for the results of the main job.
     #[arg(long, default_value = "results", value_name = "DIR")]
     out: PathBuf,
+    /// The robot of this folder, with robot.toml and gaits/*.toml, instead of those that the program was built with.
+    ///
+    /// Needs no compiler. Where the folder model-spec/ is here and has changed since the build, its files are taken too.
+    #[arg(long, global = true, value_name = "DIR")]
+    robot: Option<PathBuf>,
+    /// Another number in the specification, for this run: links.thigh.mass=1.2, limits.friction=0.8; may be given several times.
+    #[arg(long, global = true, value_name = "NAME=NUMBER", allow_hyphen_values = true)]
+    set: Vec<Setting>,
     /// Say nothing but errors, and what was asked for with `-`.
     #[arg(long, short, global = true)]
     quiet: bool,
@@ -245,22 +256,27 @@ enum Command {
 }
 
 impl Arguments {
-    /// Of what answers for a robot.
-    fn say_what_was_built(&self) {
-        let of = |gait: &str| built::note_of(&[by_name(gait)]);
+    /// Whether it is about no robot of the program.
+    fn is_of_no_robot(&self) -> bool {
+        matches!(
+            self.command,
+            Some(Command::Import(_) | Command::Check { .. } | Command::Completions { .. } | Command::Manual { .. })
+        )
+    }
+
+    /// Says what stands behind the answer, where that is not what was built.
+    fn note_changes(&self) {
+        let first = || robots::keys().into_iter().flatten().filter(|key| !key.contains('/'));
         match &self.command {
-            None => built::note_of(&first_robot().collect::<Vec<_>>()),
+            _ if self.robot.is_some() => {}
+            None => robots::note_of(first()),
             Some(Command::Dynamics { gait, .. } | Command::Model { gait, .. } | Command::Optimize { gait, .. }) => {
-                of(gait)
+                robots::note_of([gait.as_str()]);
             }
-            Some(Command::Sweep { gait, .. }) if gait.is_empty() => built::note_of(&first_robot().collect::<Vec<_>>()),
-            Some(Command::Sweep { gait, .. }) => built::note_of(&gait.iter().map(|g| by_name(g)).collect::<Vec<_>>()),
-            Some(Command::Verify { .. } | Command::Report { .. } | Command::Export { .. } | Command::Lift { .. }) => {
-                built::note_of_all()
-            }
-            Some(
-                Command::Import { .. } | Command::Check { .. } | Command::Completions { .. } | Command::Manual { .. },
-            ) => {}
+            Some(Command::Sweep { gait, .. }) if gait.is_empty() => robots::note_of(first()),
+            Some(Command::Sweep { gait, .. }) => robots::note_of(gait.iter().map(String::as_str)),
+            // Results carry their robots.
+            Some(_) => {}
         }
     }
 }
@@ -270,51 +286,45 @@ fn command() -> clap::Command {
     Arguments::command()
 }
 
+/// What was typed. The names that a gait can have depend on the robot that is asked for: that is read first.
+fn read() -> Result<Arguments, ExitCode> {
+    let usage = |error: clap::Error| {
+        let _ = error.print();
+        ExitCode::from(error.exit_code() as u8)
+    };
+    let chosen = match Arguments::try_parse() {
+        Ok(first) if first.is_of_no_robot() => {
+            if first.robot.is_some() || !first.set.is_empty() {
+                let why = "--robot and --set are for commands about a robot's gaits and results";
+                return Err(usage(command().error(ErrorKind::ArgumentConflict, why)));
+            }
+            robots::choose_built();
+            Ok(())
+        }
+        Ok(first) => robots::choose(first.robot.as_deref(), &first.set),
+        Err(_) => robots::choose(None, &[]),
+    };
+    if let Err(error) = chosen {
+        output::error(&error);
+        return Err(ExitCode::FAILURE);
+    }
+    Arguments::try_parse().map_err(usage)
+}
+
 /// Runs the program for the robots of `build`.
 pub fn run(build: Build) -> ExitCode {
     built::set(build);
-    let arguments = match Arguments::try_parse() {
+    let arguments = match read() {
         Ok(arguments) => arguments,
-        Err(error) => {
-            let _ = error.print();
-            if error.kind() == ErrorKind::InvalidValue {
-                built::note_of_all();
-            }
-            return ExitCode::from(error.exit_code() as u8);
-        }
+        Err(code) => return code,
     };
     if arguments.quiet {
         output::be_quiet();
     }
-    arguments.say_what_was_built();
+    arguments.note_changes();
     let unsuccessful =
         if matches!(arguments.command, Some(Command::Verify { .. })) { NOT_CONFIRMED } else { NO_OPTIMUM };
-    let outcome = match arguments.command {
-        None => main_job::run(&arguments.out),
-        Some(Command::Check { folder, svg }) => check::run(&folder, svg.as_deref()),
-        Some(Command::Dynamics { gait, file }) => dynamics::run(by_name(&gait), &file),
-        Some(Command::Model { gait, latex, json }) => model::run(by_name(&gait), latex, json.as_deref()),
-        Some(Command::Import(arguments)) => import::run(arguments),
-        Some(Command::Optimize { gait, criterion, speed, seed, real_legs, starts, json }) => {
-            let settings = piaffe_optimizer::search::multi_start::Settings { starts: starts.map(|n| n as usize), seed };
-            let task = Task { gait: by_name(&gait), criterion: criterion_by_name(&criterion), speed };
-            optimize::run(task, real_legs, &settings, json.as_deref())
-        }
-        Some(Command::Completions { shell }) => manual::completions(shell),
-        Some(Command::Manual { out }) => manual::pages(&out),
-        Some(Command::Export { result, format, rate, out }) => export::run(&result, format, rate, &out),
-        Some(Command::Lift { result, rate, format, out }) => lift::run(&result, format, rate, &out),
-        Some(Command::Verify { results, json }) => verify::run(&results, json.as_deref()),
-        Some(Command::Report { results, detail, out }) => report::run(&results, detail, &out),
-        Some(Command::Sweep { gait, criterion, speeds, real_legs, folder, starts, seed }) => {
-            let settings = piaffe_optimizer::search::multi_start::Settings { starts: starts.map(|n| n as usize), seed };
-            let gaits: Vec<_> =
-                if gait.is_empty() { first_robot().collect() } else { gait.iter().map(|g| by_name(g)).collect() };
-            let wanted = |c: &Criterion| criterion.iter().any(|w| w == "all" || w == c.name());
-            let criteria: Vec<Criterion> = Criterion::ALL.into_iter().filter(wanted).collect();
-            sweep::run(&gaits, real_legs, &criteria, &speeds, &folder, &settings)
-        }
-    };
+    let outcome = answer(arguments);
     // A full disk is a failure, also where only words went there.
     let outcome = outcome.and_then(|good| match output::lost() {
         Some(error) => Err(anyhow::anyhow!("cannot write to standard output: {error}")),
@@ -330,18 +340,42 @@ pub fn run(build: Build) -> ExitCode {
     }
 }
 
-fn gait_names() -> PossibleValuesParser {
-    PossibleValuesParser::new(built::gaits().iter().map(|g| g.description().key))
+/// Names of gaits: any, until it is known of which robots.
+fn gait_names() -> ValueParser {
+    robots::keys().map_or_else(ValueParser::string, |keys| PossibleValuesParser::new(keys).into())
 }
 
-/// The gaits of the robot that needs no name.
-fn first_robot() -> impl Iterator<Item = &'static dyn Gait> {
-    built::gaits().iter().copied().filter(|g| g.description().is_of_first_robot())
+/// Does what was asked for.
+fn answer(arguments: Arguments) -> anyhow::Result<bool> {
+    let of_paper = arguments.robot.is_none() && arguments.set.is_empty();
+    match arguments.command {
+        None => main_job::run(&arguments.out, of_paper),
+        Some(Command::Check { folder, svg }) => check::run(&folder, svg.as_deref()),
+        Some(Command::Dynamics { gait, file }) => dynamics::run(by_name(&gait)?, &file),
+        Some(Command::Model { gait, latex, json }) => model::run(by_name(&gait)?, latex, json.as_deref()),
+        Some(Command::Import(arguments)) => import::run(arguments),
+        Some(Command::Optimize { gait, criterion, speed, seed, real_legs, starts, json }) => {
+            let task = Task { gait: by_name(&gait)?, criterion: criterion_by_name(&criterion), speed };
+            optimize::run(task, real_legs, &settings(starts, seed), json.as_deref())
+        }
+        Some(Command::Completions { shell }) => manual::completions(shell),
+        Some(Command::Manual { out }) => manual::pages(&out),
+        Some(Command::Export { result, format, rate, out }) => export::run(&result, format, rate, &out),
+        Some(Command::Lift { result, rate, format, out }) => lift::run(&result, format, rate, &out),
+        Some(Command::Verify { results, json }) => verify::run(&results, json.as_deref()),
+        Some(Command::Report { results, detail, out }) => report::run(&results, detail, &out),
+        Some(Command::Sweep { gait, criterion, speeds, real_legs, folder, starts, seed }) => {
+            let named = || gait.iter().map(|gait| by_name(gait)).collect::<anyhow::Result<_>>();
+            let gaits = if gait.is_empty() { robots::first()? } else { named()? };
+            let wanted = |c: &Criterion| criterion.iter().any(|w| w == "all" || w == c.name());
+            let criteria: Vec<Criterion> = Criterion::ALL.into_iter().filter(wanted).collect();
+            sweep::run(&gaits, real_legs, &criteria, &speeds, &folder, &settings(starts, seed))
+        }
+    }
 }
 
-/// The gait of that name; the parser has admitted no other names.
-fn by_name(name: &str) -> &'static dyn Gait {
-    built::gaits().iter().copied().find(|g| g.description().key == name).unwrap_or(built::gaits()[0])
+fn settings(starts: Option<u32>, seed: u64) -> Settings {
+    Settings { starts: starts.map(|n| n as usize), seed }
 }
 
 fn criterion_names() -> PossibleValuesParser {

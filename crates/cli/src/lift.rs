@@ -1,7 +1,6 @@
 //! `piaffe lift`: the motion of a result, for the real legs.
 
-use super::built::gaits;
-use super::document::read_result;
+use super::document::readback;
 use super::output;
 use clap::ValueEnum;
 use piaffe_optimizer::four_legs::{Lift, RealLegs, Verdict, csv, json};
@@ -18,7 +17,7 @@ pub enum Format {
 
 /// Writes the lifted motion of the result in `file` (`-`: standard input) to `out` (`-`: standard output).
 pub fn run(file: &Path, format: Format, rate: f64, out: &str) -> anyhow::Result<bool> {
-    let Readback { gait, motion, .. } = Readback::new(read_result(file)?, gaits())?;
+    let Readback { gait, motion, .. } = readback(file)?;
     let lift = Lift::at_rate(gait, &motion, rate)?;
     let legs = RealLegs::of(&lift);
     if matches!(legs.verdict(), Verdict::BeyondLimits | Verdict::NoEquilibrium) {

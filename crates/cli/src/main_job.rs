@@ -2,7 +2,7 @@
 
 use super::digits::decimal;
 use super::optimize::progress;
-use super::{first_robot, output, report};
+use super::{output, report, robots};
 use piaffe_model::motion::Criterion;
 use piaffe_optimizer::result::Receipt;
 use piaffe_optimizer::search::local::Task;
@@ -31,8 +31,10 @@ const PUBLISHED: [Published; 6] = [
     Published { gait: "curvet", criterion: Criterion::Torque, cost: 802.26, durations: "0.456/0.298" },
 ];
 
-pub fn run(folder: &Path) -> anyhow::Result<bool> {
+/// `of_paper` tells whether the robot is the one whose values were published.
+pub fn run(folder: &Path, of_paper: bool) -> anyhow::Result<bool> {
     let started = Instant::now();
+    let published: &[Published] = if of_paper { &PUBLISHED } else { &[] };
     std::fs::create_dir_all(folder).map_err(|e| anyhow::anyhow!("cannot create {}: {e}", folder.display()))?;
     output::say!("Optimal gaits at {SPEED} m/s\n");
     output::say!(
@@ -51,7 +53,7 @@ pub fn run(folder: &Path) -> anyhow::Result<bool> {
     );
     let settings = Settings::default();
     // In the order of the paper.
-    let mut gaits: Vec<_> = first_robot().collect();
+    let mut gaits = robots::first()?;
     gaits.sort_by_key(|g| PUBLISHED.iter().position(|p| p.gait == g.description().gait));
     let bar = progress(settings.starts);
     let searches = gaits.len() * Criterion::ALL.len();
@@ -64,7 +66,7 @@ pub fn run(folder: &Path) -> anyhow::Result<bool> {
             result.examine(*gait);
             output::write_json(&folder.join(format!("{name}-{}.json", criterion.name())), &result)?;
             let record = Record::issued(result, *gait);
-            bar.suspend(|| output::quiet_when_closed(row(&record)))?;
+            bar.suspend(|| output::quiet_when_closed(row(&record, published)))?;
             records.push(record);
         }
     }
@@ -72,10 +74,14 @@ pub fn run(folder: &Path) -> anyhow::Result<bool> {
     let starts = || records.iter().map(|r| r.result.search.effort.starts);
     let (fewest, most) = (starts().min().unwrap_or(0), starts().max().unwrap_or(0));
     let starts = if fewest == most { most.to_string() } else { format!("{fewest} to {most}") };
-    output::say!(
-        "\nEvery optimum is local: the best of {starts} starts. The paper does not give all of the robot's parameters"
-    );
-    output::say!("(see model-spec/robot.toml), so its values are a yardstick, not a like-for-like comparison.");
+    if of_paper {
+        output::say!(
+            "\nEvery optimum is local: the best of {starts} starts. The paper does not give all of the robot's parameters"
+        );
+        output::say!("(see model-spec/robot.toml), so its values are a yardstick, not a like-for-like comparison.");
+    } else {
+        output::say!("\nEvery optimum is local: the best of {starts} starts.");
+    }
     let all = records.iter().all(Record::is_confirmed);
     let any = records.iter().any(Record::is_confirmed);
     output::say!("{:.1} s; results in {}", started.elapsed().as_secs_f64(), folder.display());
@@ -86,11 +92,11 @@ pub fn run(folder: &Path) -> anyhow::Result<bool> {
     Ok(all)
 }
 
-fn row(record: &Record) -> std::io::Result<()> {
+fn row(record: &Record, published: &[Published]) -> std::io::Result<()> {
     let r = &record.result;
     let mut out = output::person();
     let durations: Vec<String> = r.durations.iter().map(|t| decimal(*t, 3)).collect();
-    let published = PUBLISHED.iter().find(|p| p.gait == r.gait && p.criterion == r.criterion);
+    let published = published.iter().find(|p| p.gait == r.gait && p.criterion == r.criterion);
     let (paper, paper_steps) = published.map_or((String::new(), ""), |p| (format!("{:.2}", p.cost), p.durations));
     match (r.cost, &r.receipt) {
         (Some(cost), Some(receipt @ Receipt { kkt_residual: Some(kkt), .. })) => writeln!(

@@ -1,8 +1,7 @@
 //! `piaffe report`: results as a page with figures.
 
-use super::built::gaits;
 use super::document::{self, Document, OVERVIEW, Stated};
-use super::{input, output, whole};
+use super::{input, output, robots, whole};
 use anyhow::{Context, bail};
 use piaffe_optimizer::result::GaitResult;
 use piaffe_report::{Extremes, Record, Report};
@@ -55,9 +54,15 @@ pub fn run(paths: &[PathBuf], detail: Option<f64>, out: &Path) -> anyhow::Result
     if all.is_empty() && unread > 0 {
         bail!("none of the results could be read");
     }
-    let mut records: Vec<Record> =
-        different(all)?.into_par_iter().map(|result| Record::read(result, gaits())).collect();
-    let place = |r: &GaitResult| gaits().iter().position(|g| g.description().key == r.gait);
+    // Gaits one after another: what is derived for one result is shared by all threads.
+    let of_gaits: Vec<_> = different(all)?.into_iter().map(|result| (robots::of(&result), result)).collect();
+    let record = |(gait, result)| match gait {
+        Ok(gait) => Record::read(result, &[gait]),
+        Err(why) => Record::unreadable(result, why),
+    };
+    let mut records: Vec<Record> = of_gaits.into_par_iter().map(record).collect();
+    let keys = robots::keys().unwrap_or_default();
+    let place = |r: &GaitResult| keys.iter().position(|key| *key == r.gait);
     records.sort_by(|a, b| {
         let (a, b) = (&a.result, &b.result);
         (a.criterion, place(a)).cmp(&(b.criterion, place(b))).then(a.speed.total_cmp(&b.speed))

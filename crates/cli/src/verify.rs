@@ -1,10 +1,9 @@
 //! `piaffe verify`: what results state, derived anew.
 
-use super::built::gaits;
 use super::document::{self, Document};
-use super::{input, output};
+use super::{input, output, robots};
 use anyhow::bail;
-use piaffe_optimizer::audit::{Audit, Statement, Verdict};
+use piaffe_optimizer::audit::{Audit, Refusal, Statement, Verdict};
 use serde::Serialize;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -67,7 +66,16 @@ fn in_folder(path: &Path) -> Vec<anyhow::Result<PathBuf>> {
 fn audits(file: &Path) -> Vec<anyhow::Result<(String, Audit)>> {
     match document::read(file) {
         Ok(Document::Results(results)) => {
-            let audit = |stated: document::Stated| (Audit::new(&stated.value, &stated.result, gaits()), stated.name);
+            let audit = |stated: document::Stated| {
+                let audit = match robots::of(&stated.result) {
+                    Ok(gait) => Audit::new(&stated.value, &stated.result, &[gait]),
+                    Err(why) => {
+                        let refusal = Refusal::Because(Verdict::NotChecked, why);
+                        Audit::against(&stated.value, &stated.result, Err(&refusal))
+                    }
+                };
+                (audit, stated.name)
+            };
             results.into_iter().map(|r| r.map(audit).map(|(audit, name)| (name, audit))).collect()
         }
         Ok(Document::Sweep(sweep)) => {

@@ -48,7 +48,7 @@ impl Interpreted {
             gait: gait.clone(),
             specification,
             description: description(&mechanism, key, &lowest, &derived, &programs),
-            kernels: Kernels::new(tapes(&derived, &programs)?),
+            kernels: Kernels::new(tapes(&derived, programs.iter().map(|(program, _)| program))?),
             whole: OnceLock::new(),
             latex: OnceLock::new(),
             levers: OnceLock::new(),

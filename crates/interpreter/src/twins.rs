@@ -3,7 +3,7 @@
 use super::shapes::base_name;
 use super::tape::{Tape, Unrunnable};
 use piaffe_codegen::dynamics::Kernel;
-use piaffe_codegen::program::{Operations, Program};
+use piaffe_codegen::program::Program;
 use std::collections::BTreeMap;
 
 /// The tapes of a kernel for leg 1 and 2, or the one that is of neither.
@@ -24,9 +24,12 @@ impl Twins {
 ///
 /// # Errors
 /// If there can be none of a kernel.
-pub fn tapes(kernels: &[Kernel], programs: &[(Program, Operations)]) -> Result<BTreeMap<String, Twins>, Unrunnable> {
+pub fn tapes<'p>(
+    kernels: &[Kernel],
+    programs: impl IntoIterator<Item = &'p Program>,
+) -> Result<BTreeMap<String, Twins>, Unrunnable> {
     let mut tapes: BTreeMap<String, Twins> = BTreeMap::new();
-    for (kernel, (program, _)) in kernels.iter().zip(programs) {
+    for (kernel, program) in kernels.iter().zip(programs) {
         let (base, leg) = base_name(&kernel.name);
         if let Some(place) = tapes.entry(base.into()).or_default().0.get_mut(leg.unwrap_or(0)) {
             *place = Some(Tape::new(kernel, program)?);

@@ -7,7 +7,7 @@ use super::tape::Unrunnable;
 use super::twins::{Twins, tapes};
 use piaffe_codegen::dynamics::whole_kernels;
 use piaffe_codegen::mechanism;
-use piaffe_codegen::program::programs;
+use piaffe_codegen::program::Program;
 use piaffe_codegen::spec::Robot;
 use piaffe_model::whole::{self, Description, Joint, Leg};
 
@@ -24,7 +24,9 @@ impl Whole {
         let whole = mechanism::Whole::new(robot);
         let (ring, kernels) = whole_kernels(&whole);
         let shapes = Shapes::new(&kernels);
-        let mut tapes = tapes(&kernels, &programs(&ring, &kernels))?;
+        // On one thread: whoever asks first may be one of many, all of whom wait for this.
+        let programs: Vec<Program> = kernels.iter().map(|kernel| Program::new(&ring, kernel)).collect();
+        let mut tapes = tapes(&kernels, &programs)?;
         let mut tape = |name| tapes.remove(name).unwrap_or_default();
         let joint = |j: &mechanism::WholeJoint| Joint { name: text(&j.name), rotor_inertia: j.rotor_inertia };
         let leg = |l: &mechanism::WholeLeg| Leg {

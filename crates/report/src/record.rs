@@ -38,6 +38,12 @@ impl<'a> Record<'a> {
         }
     }
 
+    /// A result of a gait that cannot be had, and why.
+    pub fn unreadable(stated: GaitResult, why: String) -> Record<'a> {
+        let standing = if stated.is_optimal() { Standing::NotConfirmed(why) } else { Standing::NoOptimum };
+        Record { result: stated, standing }
+    }
+
     /// The gait of a confirmed optimum.
     pub fn gait(&self) -> Option<&'a dyn Gait> {
         match self.standing {

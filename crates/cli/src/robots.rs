@@ -1,0 +1,235 @@
+//! The robots that a run answers for: those of the build, those of `model-spec/` where its files have changed since, or the one of
+//! a folder that was asked for; with numbers set for this run alone. What has no compiled code is derived when it is asked for.
+//!
+//! A result carries what its gait was derived from, and is read with that, whichever robots are here.
+
+use super::built::{self, Changed};
+use super::output;
+use anyhow::{Context, anyhow};
+use piaffe_codegen::{RobotFiles, SpecFile};
+use piaffe_interpreter::Robot;
+use piaffe_model::{Gait, Specification};
+use piaffe_optimizer::origin::{Foreign, is_of};
+use piaffe_optimizer::result::GaitResult;
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::str::FromStr;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+/// Until the program ends, like those that it was built with.
+type Loaded = &'static dyn Gait;
+
+/// A number that is set for this run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setting {
+    /// As in `links.thigh.mass`.
+    pub name: String,
+    pub value: f64,
+}
+
+impl FromStr for Setting {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Setting, String> {
+        let (name, number) = text.split_once('=').ok_or("write NAME=NUMBER, for example links.thigh.mass=1.2")?;
+        match number.trim().parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(Setting { name: name.trim().into(), value }),
+            _ => Err(format!("`{number}` is not a number; write for example links.thigh.mass=1.2")),
+        }
+    }
+}
+
+/// A gait that can be asked for.
+struct Choice {
+    key: &'static str,
+    origin: Origin,
+    derived: OnceLock<Result<Loaded, String>>,
+}
+
+#[derive(Clone)]
+enum Origin {
+    Built(Loaded),
+    /// A robot read from its files, or what is wrong with them.
+    Files(Arc<Result<Robot, String>>),
+}
+
+/// Of this run; chosen once, when it starts.
+static CHOICES: OnceLock<Vec<Choice>> = OnceLock::new();
+
+fn choices() -> &'static [Choice] {
+    CHOICES.get().map_or(&[], Vec::as_slice)
+}
+
+/// The robot of this folder if one is given, else those of the build or of `model-spec/`; with these numbers.
+///
+/// # Errors
+/// If the folder has no robot, or its files have mistakes.
+pub fn choose(folder: Option<&Path>, settings: &[Setting]) -> anyhow::Result<()> {
+    let chosen = match folder {
+        Some(folder) => of_folder(folder, settings)?,
+        None => here(settings),
+    };
+    CHOICES.get_or_init(|| chosen);
+    Ok(())
+}
+
+/// The robots of the build, wherever the program runs.
+pub fn choose_built() {
+    let choice = |gait: &Loaded| Choice::new(gait.description().key, Origin::Built(*gait));
+    CHOICES.get_or_init(|| built::gaits().iter().map(choice).collect());
+}
+
+fn of_folder(folder: &Path, settings: &[Setting]) -> anyhow::Result<Vec<Choice>> {
+    let files = RobotFiles::read(folder).map_err(|why| anyhow!("{why}"))?;
+    let robot = read(Ok(RobotFiles { module: String::new(), ..files }), settings).map_err(|why| anyhow!("{why}"))?;
+    let origin = Origin::Files(Arc::new(Ok(robot.clone())));
+    Ok(robot.gaits().into_iter().map(|key| Choice::new(key.leak(), origin.clone())).collect())
+}
+
+fn here(settings: &[Setting]) -> Vec<Choice> {
+    let changed = built::changed();
+    let of_build = built::gaits().iter().map(|gait| built::module(gait.description().key).to_string());
+    let mut modules: Vec<String> = of_build.chain(changed.iter().map(|file| file.module.clone())).collect();
+    let mut known = BTreeSet::new();
+    modules.retain(|module| known.insert(module.clone()));
+    let choices = modules.into_iter().flat_map(|module| {
+        let built: Vec<Loaded> =
+            built::gaits().iter().copied().filter(|g| built::module(g.description().key) == module).collect();
+        let files = match changed.iter().any(|file| file.module == module) {
+            true => built::files_of(&module),
+            false if settings.is_empty() => {
+                return built.iter().map(|g| Choice::new(g.description().key, Origin::Built(*g))).collect();
+            }
+            false => Ok(of_build_files(&module, &built)),
+        };
+        let robot = read(files, settings);
+        let keys: Vec<&str> = match &robot {
+            Ok(robot) => robot.gaits().into_iter().map(|key| &*key.leak()).collect(),
+            // Who asks for one of these is told what is wrong.
+            Err(_) => built.iter().map(|g| g.description().key).collect(),
+        };
+        let origin = Origin::Files(Arc::new(robot));
+        keys.into_iter().map(|key| Choice::new(key, origin.clone())).collect::<Vec<_>>()
+    });
+    choices.collect()
+}
+
+/// The files from which the gaits of a robot were built.
+fn of_build_files(module: &str, gaits: &[Loaded]) -> RobotFiles {
+    let file = |path: String, text: &str| SpecFile { path, text: text.into() };
+    let specifications = || gaits.iter().filter_map(|g| Some((g.description().gait, g.specification()?)));
+    let robot = specifications().next().map_or("", |(_, specification)| &specification.robot);
+    RobotFiles {
+        module: module.into(),
+        robot: file("robot.toml".into(), robot),
+        gaits: specifications().map(|(name, of)| file(format!("{name}.toml"), &of.gait)).collect(),
+    }
+}
+
+fn read(files: Result<RobotFiles, String>, settings: &[Setting]) -> Result<Robot, String> {
+    // What is wrong with the files themselves is said before what is set.
+    let robot = files.and_then(|files| Robot::new(files).map_err(|why| why.to_string()))?;
+    let mut files = robot.files().clone();
+    for Setting { name, value } in settings {
+        files.set(name, *value)?;
+    }
+    Robot::new(files).map_err(|why| format!("with the numbers that are set, the robot is none:\n{why}"))
+}
+
+impl Choice {
+    fn new(key: &'static str, origin: Origin) -> Choice {
+        Choice { key, origin, derived: OnceLock::new() }
+    }
+
+    fn gait(&self) -> anyhow::Result<Loaded> {
+        let robot = match &self.origin {
+            Origin::Built(gait) => return Ok(*gait),
+            Origin::Files(robot) => robot,
+        };
+        let derived = self.derived.get_or_init(|| match &**robot {
+            Ok(robot) => robot.gait(self.key).map(kept).map_err(|why| why.to_string()),
+            Err(why) => Err(why.clone()),
+        });
+        derived.clone().map_err(|why| anyhow!("{why}"))
+    }
+}
+
+fn kept(gait: impl Gait + 'static) -> Loaded {
+    Box::leak(Box::new(gait))
+}
+
+/// Names of all gaits, once the robots have been chosen.
+pub fn keys() -> Option<Vec<&'static str>> {
+    CHOICES.get().map(|choices| choices.iter().map(|choice| choice.key).collect())
+}
+
+/// The gait of this name.
+///
+/// # Errors
+/// If there is none, or it cannot be derived.
+pub fn by_name(name: &str) -> anyhow::Result<Loaded> {
+    let choice = choices().iter().find(|choice| choice.key == name);
+    choice.with_context(|| format!("there is no gait `{name}`"))?.gait()
+}
+
+/// The gaits of the robot that needs no name.
+///
+/// # Errors
+/// If they cannot be derived.
+pub fn first() -> anyhow::Result<Vec<Loaded>> {
+    choices().iter().filter(|choice| !choice.key.contains('/')).map(Choice::gait).collect()
+}
+
+/// Says which files have changed since the build, so that they are used as they stand: of the robots of these gaits.
+pub fn note_of<'k>(keys: impl IntoIterator<Item = &'k str>) {
+    /// Files that are named.
+    const SHOWN: usize = 3;
+    let derived = |key: &str| {
+        let choice = choices().iter().find(|choice| choice.key == key);
+        choice.is_none_or(|choice| matches!(choice.origin, Origin::Files(_)))
+    };
+    let modules: BTreeSet<&str> = keys.into_iter().filter(|key| derived(key)).map(built::module).collect();
+    let changed: Vec<Changed> = built::changed().into_iter().filter(|file| modules.contains(&*file.module)).collect();
+    if changed.is_empty() {
+        return;
+    }
+    let mut which: Vec<String> = changed.iter().take(SHOWN).map(|file| format!("{} {}", file.path, file.how)).collect();
+    if changed.len() > SHOWN {
+        which.push(format!("and {} more", changed.len() - SHOWN));
+    }
+    output::note(&format!("{} since this program was built: it takes the files as they are now", which.join(", ")));
+}
+
+/// Gaits that were derived from what results carry, under their names there.
+static CARRIED: Mutex<Vec<(String, Specification, Result<Loaded, String>)>> = Mutex::new(Vec::new());
+
+/// The gait that a result is of: one that is here, or the one that the result carries with it. Not to be asked for from several threads
+/// at once, which share the derivation.
+///
+/// # Errors
+/// Why there is none.
+pub fn of(result: &GaitResult) -> Result<Loaded, String> {
+    let here = choices().iter().find(|choice| choice.key == result.gait).map(Choice::gait);
+    let Some(carried) = &result.specification else {
+        let known = || choices().iter().map(|choice| choice.key).collect::<Vec<_>>().join(", ");
+        let unknown = || Foreign::UnknownGait { gait: result.gait.clone(), known: known() }.to_string();
+        return here.ok_or_else(unknown)?.map_err(|why| format!("{why:#}"));
+    };
+    match here {
+        // What it carries must be what the gait here was derived from: else it would go unread.
+        Some(Ok(gait)) if is_of(result, gait.description()) && gait.specification() == Some(carried) => Ok(gait),
+        _ => of_carried(carried, &result.gait),
+    }
+}
+
+fn of_carried(specification: &Specification, key: &str) -> Result<Loaded, String> {
+    // Whoever panicked left whole entries behind.
+    let mut all = CARRIED.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, _, known)) = all.iter().find(|(name, known, _)| name == key && known == specification) {
+        return known.clone();
+    }
+    let derived = Robot::carried(specification, key).map(kept);
+    let derived = derived.map_err(|why| format!("the specification that the result carries is of no use: {why}"));
+    all.push((key.into(), specification.clone(), derived.clone()));
+    derived
+}

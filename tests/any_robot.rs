@@ -1,0 +1,155 @@
+//! Any robot, as it stands in its files, without a compiler: the program as a person runs it.
+
+use serde_json::Value;
+use std::path::Path;
+use std::process::{Command, Output};
+use tempfile::{TempDir, tempdir};
+
+const STORK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/any_robot/stork");
+const SHIPPED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/model-spec");
+
+fn piaffe_in(folder: &Path, arguments: &str) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_piaffe")).args(arguments.split(' ')).current_dir(folder).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// What is printed, of a run that ends well and says nothing on standard error but these words.
+#[track_caller]
+fn succeeds(folder: &Path, arguments: &str, note: &str) -> String {
+    let out = piaffe_in(folder, arguments);
+    let told = text(&out.stderr);
+    assert!(out.status.success() && told.contains(note), "{arguments}: {told}{}", text(&out.stdout));
+    assert!(told.lines().count() <= usize::from(!note.is_empty()), "{told}");
+    text(&out.stdout)
+}
+
+#[track_caller]
+fn fails(folder: &Path, arguments: &str, code: i32, words: &str) {
+    let out = piaffe_in(folder, arguments);
+    let told = text(&out.stderr);
+    assert!(out.status.code() == Some(code) && told.contains(words), "{arguments}: {:?} {told}", out.status);
+}
+
+fn result(folder: &Path, arguments: &str, note: &str) -> Value {
+    serde_json::from_str(&succeeds(folder, &format!("{arguments} --json -"), note)).unwrap()
+}
+
+/// All but how long it took.
+fn timeless(mut result: Value) -> Value {
+    result["seconds"] = 0.into();
+    result
+}
+
+/// A folder with a copy of what is shipped, in which `from` is `to`.
+fn edited(from: &str, to: &str) -> TempDir {
+    let folder = tempdir().unwrap();
+    copy(Path::new(SHIPPED), &folder.path().join("model-spec"));
+    let robot = folder.path().join("model-spec/robot.toml");
+    let text = std::fs::read_to_string(&robot).unwrap();
+    assert!(text.contains(from));
+    std::fs::write(&robot, text.replace(from, to)).unwrap();
+    folder
+}
+
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap() {
+        let (entry, name) = (entry.as_ref().unwrap().path(), entry.as_ref().unwrap().file_name());
+        if entry.is_dir() { copy(&entry, &to.join(name)) } else { assert!(std::fs::copy(entry, to.join(name)).is_ok()) }
+    }
+}
+
+#[test]
+fn a_robot_that_nobody_built_walks_and_its_result_is_good_anywhere() {
+    let folder = tempdir().unwrap();
+    let walks = format!("optimize stalk --speed 0.5 --starts 3 --robot {STORK} --json stalk.json");
+    let told = succeeds(folder.path(), &walks, "");
+    assert!(told.contains("stalk of stork, least energy at 0.5 m/s: local optimum, receipt holds"), "{told}");
+    // The result says what it is of: nothing else is needed.
+    assert!(succeeds(folder.path(), "verify stalk.json", "").contains("stalk-energy-0.5, confirmed"));
+    assert!(succeeds(folder.path(), "export stalk.json --format csv --rate 100", "").lines().count() > 10);
+    assert!(succeeds(folder.path(), "export stalk.json --format mjcf", "").contains("left_metatarsus"));
+    // On the ground it would fall over to the side, which a model in the plane does not know.
+    succeeds(folder.path(), "lift stalk.json --rate 100", "the real legs cannot move so");
+    assert!(succeeds(folder.path(), "report stalk.json --out page", "").contains("index.html"));
+    assert!(succeeds(folder.path(), &format!("model stalk --robot {STORK}"), "").contains("ankle2"));
+
+    // What it carries is what is verified: another number there is another robot.
+    let text = std::fs::read_to_string(folder.path().join("stalk.json")).unwrap();
+    std::fs::write(folder.path().join("heavier.json"), text.replace("mass = 5.0 ", "mass = 5.5 ")).unwrap();
+    let out = piaffe_in(folder.path(), "verify heavier.json");
+    assert_eq!(out.status.code(), Some(4), "{}", self::text(&out.stdout));
+    std::fs::write(folder.path().join("broken.json"), text.replace("mass = 5.0 ", "mess = 5.0 ")).unwrap();
+    let out = piaffe_in(folder.path(), "verify broken.json");
+    let told = self::text(&out.stdout);
+    assert!(out.status.code() == Some(4) && told.contains("did you mean `mass`?"), "{told}");
+}
+
+#[test]
+fn a_sweep_of_any_robot_is_confirmed_as_a_whole() {
+    let folder = tempdir().unwrap();
+    let sweep = format!("sweep --robot {STORK} --criterion torque --speeds 0.4,0.5 --starts 2 --out sweep");
+    succeeds(folder.path(), &sweep, "");
+    assert!(succeeds(folder.path(), "verify sweep", "").contains("sweep.json"));
+}
+
+/// The program has these robots in itself. Whether it asks them or their files makes no difference.
+#[test]
+fn files_lead_to_the_result_of_the_built_robot() {
+    let folder = tempdir().unwrap();
+    for (gait, robot) in [("trot", SHIPPED.to_string()), ("curvet", SHIPPED.to_string())] {
+        let ask = format!("optimize {gait} --speed 0.6 --starts 1");
+        let built = timeless(result(folder.path(), &ask, ""));
+        assert_eq!(timeless(result(folder.path(), &format!("{ask} --robot {robot}"), "")), built, "{gait}");
+    }
+}
+
+#[test]
+fn a_number_set_for_a_run_is_the_number_in_the_file() {
+    let (here, folder) = (tempdir().unwrap(), edited("mass = 1.6 ", "mass = 1.25 "));
+    let ask = "optimize trot --speed 0.6 --starts 1";
+    let note =
+        "note: model-spec/robot.toml has changed since this program was built: it takes the files as they are now";
+    let of_file = timeless(result(folder.path(), ask, note));
+    // Of the robot in the program, which needs no files.
+    let set = timeless(result(here.path(), &format!("{ask} --set links.thigh.mass=1.25"), ""));
+    assert_eq!(set, of_file);
+    let as_built = timeless(result(here.path(), ask, ""));
+    assert!(set["cost"].as_f64() < as_built["cost"].as_f64(), "{}", set["cost"]);
+    assert_ne!(set["fingerprint"], as_built["fingerprint"]);
+    // Over a changed file, and of a gait.
+    let both = format!("{ask} --set links.thigh.mass=1.6 --set limits.swing_clearance=0.01");
+    let both = timeless(result(folder.path(), &both, "has changed"));
+    assert_eq!(both, timeless(result(here.path(), &format!("{ask} --set limits.swing_clearance=0.01"), "")));
+
+    // Each is confirmed by any program.
+    std::fs::write(here.path().join("light.json"), serde_json::to_string(&set).unwrap()).unwrap();
+    std::fs::write(here.path().join("built.json"), serde_json::to_string(&as_built).unwrap()).unwrap();
+    assert_eq!(succeeds(here.path(), "verify light.json built.json", "").matches(", confirmed").count(), 2);
+    assert!(
+        succeeds(folder.path(), &format!("verify {}", here.path().join("built.json").display()), "")
+            .contains(", confirmed")
+    );
+}
+
+#[test]
+fn what_is_no_robot_is_said_with_its_place_and_a_remedy() {
+    let here = tempdir().unwrap();
+    let trot = "optimize trot --speed 0.6";
+    fails(here.path(), &format!("{trot} --set links.thigh.mas=1"), 1, "did you mean `links.thigh.mass`?");
+    fails(here.path(), &format!("{trot} --set links.thigh.mass=heavy"), 2, "`heavy` is not a number");
+    fails(here.path(), &format!("{trot} --set links.thigh.mass=-1"), 1, "mass = -1");
+    fails(here.path(), &format!("{trot} --set links.thigh.inertia.axial=1"), 1, "robot.toml:");
+    fails(here.path(), &format!("{trot} --robot nowhere"), 1, "nowhere");
+    fails(here.path(), &format!("optimize trot --speed 0.6 --robot {STORK}"), 2, "[possible values: stalk]");
+    fails(here.path(), &format!("check {STORK} --set gravity=1"), 2, "--set");
+
+    let folder = edited("mass = 1.6 ", "masss = 1.6 ");
+    fails(folder.path(), trot, 1, "model-spec/robot.toml:");
+    fails(folder.path(), trot, 1, "did you mean `mass`?");
+    // Which does not keep other robots from walking.
+    succeeds(folder.path(), "model rabbit/walk", "");
+}
