@@ -1,7 +1,8 @@
 //! Optimal periodic gaits of legged robots, from a declarative description, with a receipt for each.
 //!
 //! This package holds the robots of `model-spec/`: its build derives their dynamics. Everything else comes from crates that
-//! know no robot, so that an edit of a robot compiles its dynamics and nothing more.
+//! know no robot, so that an edit of a robot compiles its dynamics and nothing more. [`Robot`] reads any other robot from its files, without a
+//! compiler.
 
 #![forbid(unsafe_code)]
 
@@ -12,6 +13,10 @@ pub use piaffe_cli as cli;
 pub use piaffe_export as export;
 #[cfg(feature = "import")]
 pub use piaffe_import as import;
+#[cfg(feature = "interpreter")]
+pub use piaffe_interpreter as interpreter;
+#[cfg(feature = "interpreter")]
+pub use piaffe_interpreter::Robot;
 pub use piaffe_model as model;
 pub use piaffe_model::{motion, units};
 pub use piaffe_number as number;

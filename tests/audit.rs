@@ -139,12 +139,20 @@ fn what_was_changed_is_named() {
 
 #[test]
 fn what_cannot_be_checked_is_said_to_be_so() {
-    for (pointer, value, why) in [
-        ("/fingerprint", json!("0123456789abcdef"), "fingerprint"),
-        ("/gait", json!("canter"), "there is no gait `canter`"),
+    // With the files of the gait, and without.
+    let unknown = "there is no gait `canter`";
+    for (pointer, value, carries, why) in [
+        ("/fingerprint", json!("0123456789abcdef"), true, "fingerprint"),
+        ("/fingerprint", json!("0123456789abcdef"), false, "fingerprint"),
+        ("/gait", json!("canter"), true, "fingerprint"),
+        ("/gait", json!("canter"), false, unknown),
+        ("/specification/gait", json!("moves = 1"), true, "unknown key `moves`"),
     ] {
         let mut result = TROT.clone();
         *result.pointer_mut(pointer).unwrap() = value;
+        if !carries {
+            result.as_object_mut().unwrap().remove("specification");
+        }
         let (code, statements, words) = audited("foreign.json", &result);
         assert!(code == 4 && words.contains(why), "{words}");
         assert_eq!(

@@ -62,7 +62,15 @@ fn commands(block: &str) -> Vec<String> {
     found
 }
 
-/// Each document's commands run one after another in a folder of their own, where `piaffe` is this build's.
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap().map(Result::unwrap) {
+        let (from, to) = (entry.path(), to.join(entry.file_name()));
+        if from.is_dir() { copy(&from, &to) } else { assert!(std::fs::copy(from, to).is_ok()) }
+    }
+}
+
+/// Each document's commands run one after another in a folder of their own with the specification, where `piaffe` is this build's.
 /// What starts with `cargo` builds the project and is another test's.
 #[test]
 fn commands_in_the_documents_run() {
@@ -71,6 +79,7 @@ fn commands_in_the_documents_run() {
     let mut count = 0;
     for file in documents() {
         let folder = tempfile::tempdir().unwrap();
+        copy(&root().join("model-spec"), &folder.path().join("model-spec"));
         let text = std::fs::read_to_string(&file).unwrap();
         let all = blocks(&text, "console").into_iter().flat_map(|block| commands(&block));
         for command in all.filter(|c| !c.starts_with("cargo")) {

@@ -1,11 +1,12 @@
 //! Gaits that are evaluated as they were derived have the bits of those that were compiled.
 
+use piaffe::Robot;
 use piaffe::gaits::GAITS;
+use piaffe::interpreter::Interpreted;
 use piaffe::model::Gait;
 use piaffe_codegen::dynamics::{Kernel, kernels};
 use piaffe_codegen::mechanism::Mechanism;
 use piaffe_codegen::{RobotFiles, specified};
-use piaffe_interpreter::{Interpreted, Robot};
 use std::path::Path;
 
 /// The robots of `model-spec`, with the gaits that are also compiled.

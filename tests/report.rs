@@ -237,6 +237,8 @@ fn what_cannot_be_shown_is_said() {
     assert!(attempt(&short).contains("is not confirmed"));
     let mut unknown = good.clone();
     unknown["gait"] = "gallop".into();
+    assert!(attempt(&unknown).contains("another robot"));
+    unknown.as_object_mut().unwrap().remove("specification");
     assert!(attempt(&unknown).contains("no gait `gallop`"));
     let mut failed = good;
     failed["status"] = "infeasible".into();

@@ -207,6 +207,7 @@ pub const ITEMS: &[&str] = &[
     "Placement",
     "Reduced",
     "Result",
+    "SPECIFICATION",
     "Self",
     "Sharing",
     "SharingCurvature",

@@ -200,8 +200,15 @@ pub fn note_of<'k>(keys: impl IntoIterator<Item = &'k str>) {
     output::note(&format!("{} since this program was built: it takes the files as they are now", which.join(", ")));
 }
 
-/// Gaits that were derived from what results carry, under their names there.
-static CARRIED: Mutex<Vec<(String, Specification, Result<Loaded, String>)>> = Mutex::new(Vec::new());
+/// What was derived from the specification that a result carries, under its gait's name there.
+struct Carried {
+    key: String,
+    specification: Specification,
+    derived: Result<Loaded, String>,
+}
+
+/// Many results carry the same one.
+static CARRIED: Mutex<Vec<Carried>> = Mutex::new(Vec::new());
 
 /// The gait that a result is of: one that is here, or the one that the result carries with it. Not to be asked for from several threads
 /// at once, which share the derivation.
@@ -218,18 +225,21 @@ pub fn of(result: &GaitResult) -> Result<Loaded, String> {
     match here {
         // What it carries must be what the gait here was derived from: else it would go unread.
         Some(Ok(gait)) if is_of(result, gait.description()) && gait.specification() == Some(carried) => Ok(gait),
-        _ => of_carried(carried, &result.gait),
+        _ => of_carried(carried, &result.gait).and_then(|gait| {
+            let what = "the files that the result carries are those of another robot or gait (its fingerprint differs)";
+            is_of(result, gait.description()).then_some(gait).ok_or_else(|| what.to_string())
+        }),
     }
 }
 
 fn of_carried(specification: &Specification, key: &str) -> Result<Loaded, String> {
     // Whoever panicked left whole entries behind.
     let mut all = CARRIED.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some((_, _, known)) = all.iter().find(|(name, known, _)| name == key && known == specification) {
-        return known.clone();
+    if let Some(known) = all.iter().find(|known| known.key == key && known.specification == *specification) {
+        return known.derived.clone();
     }
     let derived = Robot::carried(specification, key).map(kept);
-    let derived = derived.map_err(|why| format!("the specification that the result carries is of no use: {why}"));
-    all.push((key.into(), specification.clone(), derived.clone()));
+    let derived = derived.map_err(|why| format!("the files that the result carries are of no use: {why}"));
+    all.push(Carried { key: key.into(), specification: specification.clone(), derived: derived.clone() });
     derived
 }

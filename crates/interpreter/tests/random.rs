@@ -157,10 +157,23 @@ fn compare(ring: &Ring, kernels: &[Kernel], source: &str, what: &str, draws: &mu
     }
 }
 
+/// Of every kind one; three links and a platform that rolls make derivations of many seconds.
+const KINDS: [&str; 8] = [
+    "trot with rotors",
+    "level, hips apart",
+    "curvet",
+    "amble",
+    "amble with hips that turn",
+    "biped",
+    "crooked trot",
+    "crooked curvet",
+];
+
 #[test]
 fn kernels_have_the_bits_of_the_generated_source() {
     let mut rng = fastrand::Rng::with_seed(3);
-    for (what, build) in &BUILDS {
+    for kind in KINDS {
+        let (what, build) = BUILDS.iter().find(|(what, _)| *what == kind).unwrap();
         let mut draws = Draws::new((0..DRAWS).map(|_| rng.f64()).collect());
         let (robot, gait) = specification(build, &mut draws);
         let mechanism = Mechanism::new(&robot, &gait);
