@@ -2,6 +2,7 @@
 
 use criterion::{Criterion, Throughput};
 use piaffe::gaits::{GAITS, amble, curvet, trot};
+use piaffe::model::Mode;
 use piaffe::verify::multibody::Multibody;
 use std::hint::black_box;
 use std::path::Path;
@@ -67,9 +68,17 @@ fn dynamics(c: &mut Criterion) {
             });
         });
         let qdd = vec![1.0; d.prescribed()];
-        let mut out = d.shapes.inverse_jacobian.zeros();
+        let mut out = d.shapes.stance.inverse_jacobian.zeros();
         group.bench_function("torques, reaction and Jacobian, generated", |b| {
-            b.iter(|| gait.inverse_jacobian(0, black_box(&q), black_box(&qd), black_box(&qdd), black_box(&mut out)));
+            b.iter(|| {
+                gait.inverse_jacobian(
+                    Mode::Stance(0),
+                    black_box(&q),
+                    black_box(&qd),
+                    black_box(&qdd),
+                    black_box(&mut out),
+                )
+            });
         });
         group.finish();
     }

@@ -117,7 +117,7 @@ fn fragments_of_the_specification_are_real() {
 fn the_reference_is_that_of_the_schemas() {
     let mut text = String::from(
         "# The specification\n\nEvery key, its unit and its bounds; written from `model-spec/schema/`. A key without a \
-         default must be there.\n",
+         default must be there; of a gait's phases either `half_steps`, or `phases` and `cycle`.\n",
     );
     for (name, intro) in [("robot", "`robot.toml`"), ("gait", "`gaits/*.toml`")] {
         let file = root().join(format!("model-spec/schema/{name}.schema.json"));
@@ -144,6 +144,7 @@ fn walk(schema: &Value, at: &str, rows: &mut Vec<[String; 3]>) {
     for (key, value) in schema["properties"].as_object().into_iter().flatten() {
         rows.push([joined(key), cell(value["description"].as_str().unwrap_or("")), kind(value)]);
         walk(value, &joined(key), rows);
+        walk(&value["items"], &format!("{}.NUMBER", joined(key)), rows);
     }
     let named = &schema["additionalProperties"];
     if named.is_object() {

@@ -51,9 +51,10 @@ fn a_controller_that_follows_the_polynomials_does_the_walk() {
         let walk = Walk::even(*gait, &motion, 20).unwrap();
         let d = gait.description();
         for m in &walk.moments {
-            let half = &program["half_steps"][m.half_step];
+            let half = &program["half_steps"][m.phase];
             let t = m.share * half["duration"].as_f64().unwrap();
-            let members: Vec<&str> = d.legs[m.stance].members.iter().map(|m| m.name).collect();
+            let stance = m.mode.stance().unwrap();
+            let members: Vec<&str> = d.legs[stance].members.iter().map(|m| m.name).collect();
             assert_eq!(half["stance"], json!(members));
             assert_eq!(half["coordinates"].as_array().unwrap().len(), d.prescribed());
             for (j, polynomial) in half["coordinates"].as_array().unwrap().iter().enumerate() {
@@ -187,7 +188,7 @@ fn mujoco_agrees_about_masses_feet_and_inverse_dynamics_of_the_real_robot() {
             // Sᵀ(M q̈ + bias) = D_Γ Γ + D_i F_i.
             let forces = numbers(&found["forces"]);
             let mut jacobian = vec![0.0; n * nc];
-            gait.foot_jacobian(m.stance, &m.q, &mut jacobian);
+            gait.foot_jacobian(m.mode.stance().unwrap(), &m.q, &mut jacobian);
             for i in 0..n {
                 let theirs: f64 = s.iter().zip(&forces).map(|(row, f)| row[i] * f).sum();
                 let torque = if (nc..nc + d.joints()).contains(&i) { m.torque[i - nc] } else { 0.0 };

@@ -6,7 +6,7 @@ mod given;
 
 use given::given;
 use piaffe::import::{Fault, Import, Kind, Options, import};
-use piaffe_codegen::spec::{HalfSteps, Robot, parse_gait, parse_robot};
+use piaffe_codegen::spec::{Robot, Then, parse_gait, parse_robot};
 use piaffe_codegen::{RobotFiles, SpecFile, check};
 
 fn text(file: &str) -> String {
@@ -53,18 +53,18 @@ fn says(made: &Import, words: &str) -> bool {
     made.notes.iter().any(|note| note.contains(words)) && made.robot.contains(words)
 }
 
-/// How the half steps of a gait relate.
-fn half_steps(made: &Import, gait: &str) -> HalfSteps {
+/// What follows the half steps of a gait.
+fn then(made: &Import, gait: &str) -> Then {
     let robot = parse_robot("robot.toml", &made.robot).unwrap();
     let (name, text) = made.gaits.iter().find(|(name, _)| name == gait).unwrap();
-    parse_gait(name, text, &robot).unwrap().half_steps
+    parse_gait(name, text, &robot).unwrap().phases.then
 }
 
 #[test]
 fn a_plain_quadruped_trots_and_bounds() {
     let (made, robot) = imported("00-control-ok.urdf");
     assert_eq!(gaits(&made), ["trot.toml", "bound.toml"]);
-    assert_eq!(half_steps(&made, "trot.toml"), HalfSteps::Mirrored);
+    assert_eq!(then(&made, "trot.toml"), Then::Mirrored);
     assert_eq!(robot.legs[0].chain[1].link.end, [0.0, -0.2, 0.0]);
 }
 
@@ -100,14 +100,14 @@ fn what_is_dropped_anyway_refuses_no_file() {
 fn what_a_file_rounds_is_made_alike() {
     let (made, robot) = imported("04-left-right-differ-by-15um-in-the-virtual-leg.urdf");
     assert!(says(&made, "made alike"));
-    assert_eq!(half_steps(&made, "trot.toml"), HalfSteps::Mirrored);
+    assert_eq!(then(&made, "trot.toml"), Then::Mirrored);
     assert!((robot.legs[0].chain[0].link.com[0] - 0.010015).abs() < 1e-12);
     let (made, robot) = imported("cad.urdf");
-    assert_eq!(half_steps(&made, "walk.toml"), HalfSteps::Mirrored);
+    assert_eq!(then(&made, "walk.toml"), Then::Mirrored);
     assert!((robot.legs[1].chain[1].link.mass - 1.00015).abs() < 1e-12);
     // Where a person wants them as they are, the half steps are two.
     let (made, robot) = with("cad.urdf", &[("--alike", "0")]);
-    assert_eq!(half_steps(&made, "walk.toml"), HalfSteps::Distinct);
+    assert_eq!(then(&made, "walk.toml"), Then::Repeat);
     assert_eq!(robot.legs[1].chain[1].link.mass, 1.0003);
 }
 

@@ -63,7 +63,7 @@ fn the_verifier_uses_no_generated_kernel() {
 
 #[test]
 fn the_optimizer_reads_limits_for_itself() {
-    for folder in ["constraints", "cost", "cycle", "instant", "stance"].map(|f| format!("crates/optimizer/src/{f}")) {
+    for folder in ["constraints", "cost", "cycle", "flow", "instant"].map(|f| format!("crates/optimizer/src/{f}")) {
         none(lines_with(&sources(&folder), "piaffe_verify"), "what is optimized is read as it is verified");
     }
 }

@@ -25,7 +25,9 @@ fn the_residual_of_an_optimum_is_small_from_the_motion_alone_as_the_optimizer_sa
             let (name, own) = (gait.description().key, local.kkt.stationarity.max(local.kkt.complementarity));
             assert!(own < 1e-6 && found.residual() < 1e-6, "{name} {criterion:?}: {own:e} and {found:?}");
             // A cycle of unactuated motion has four equations, of two half steps seven, and all have a price.
-            assert_eq!(found.equations.len(), 3 * gait.description().phases() + 1);
+            let d = gait.description();
+            let of_phase = |k: usize| 2 + usize::from(d.transition(k).lands().is_some());
+            assert_eq!(found.equations.len(), (0..d.phases.len()).map(of_phase).sum::<usize>() + 1);
             assert!(found.limits.iter().all(|p| p.value > 0.0 && p.time >= 0.0), "{name} {criterion:?}: {found:?}");
         }
     }
@@ -95,9 +97,9 @@ fn knees_that_must_be_higher_cost_their_price() {
         let free = optimum(gait, criterion, 0.6);
         let mut cycle = Cycle::new(gait, criterion, 0.6);
         cycle.simulate(&free.theta).unwrap();
-        let heights = Quantities::new(gait.description()).heights();
+        let heights = |phase| Quantities::new(gait.description(), cycle.mode(phase)).heights();
         let nodes = (0..cycle.phases()).flat_map(|phase| (0..cycle.nodes(phase)).map(move |node| (phase, node)));
-        let lowest = nodes.flat_map(|(phase, node)| &cycle.quantities(phase, node)[heights.clone()]);
+        let lowest = nodes.flat_map(|(phase, node)| &cycle.quantities(phase, node)[heights(phase)]);
         let lowest = lowest.copied().fold(f64::INFINITY, f64::min);
         assert!(lowest > 0.05, "{key}: knees at {lowest} m");
         let raised = |by: f64| Altered::new(gait, |d| d.limits.body_clearance = lowest + 0.002 + by).unwrap();

@@ -5,11 +5,14 @@
 mod copy;
 
 use copy::{Copy, Factors};
+use piaffe::cycle::{Cycle, theta};
 use piaffe::gaits::GAITS;
 use piaffe::model::Gait;
 use piaffe::motion::Criterion;
 use piaffe::result::{GaitResult, Status};
+use piaffe::search::guess::{Plan, walk};
 use piaffe::search::multi_start::{Settings, search};
+use piaffe::sqp::{Problem, Values};
 use piaffe::units::Units;
 
 /// Far below and above all robots.
@@ -74,6 +77,58 @@ fn has_the_same_bits(gait: &dyn Gait, criterion: Criterion, (length, mass): (f64
     assert_eq!(found.certificate.map(|c| c.bounds), original.certificate.map(|c| c.bounds), "{name} {criterion:?}");
 }
 
+/// All that the solver sees of a motion: values, their derivatives and the Hessian of the Lagrangian, in natural sizes of the
+/// variables, as the motion is given. `None` if there is no such motion.
+fn program(gait: &dyn Gait, criterion: Criterion, speed: f64, natural: &[f64]) -> Option<Vec<f64>> {
+    let mut cycle = Cycle::new(gait, criterion, speed);
+    let scale = cycle.scale();
+    let theta: Vec<f64> = natural.iter().zip(&scale).map(|(x, size)| x * size).collect();
+    let mut values = Values::zeros(cycle.equalities(), cycle.inequalities());
+    cycle.evaluate(&theta, &mut values).ok()?;
+    cycle.linearize(&theta).ok()?;
+    let n = theta.len();
+    let (mut found, mut row) = (Vec::new(), vec![0.0; n]);
+    let mut add = |row: &[f64]| found.extend(row.iter().zip(&scale).map(|(slope, size)| slope * size));
+    cycle.gradient(&mut row);
+    add(&row);
+    for i in 0..cycle.equalities() {
+        cycle.equality_row(i, &mut row);
+        add(&row);
+    }
+    for i in 0..cycle.inequalities() {
+        cycle.inequality_row(i, &mut row);
+        add(&row);
+    }
+    // Any multipliers, so that everything has a part in it.
+    let lambda: Vec<f64> = (0..cycle.equalities()).map(|i| 1.0 - 0.3 * i as f64).collect();
+    let mu: Vec<f64> = (0..cycle.inequalities()).map(|i| (i % 7) as f64).collect();
+    let mut hessian = vec![0.0; n * n];
+    assert!(cycle.hessian(&lambda, &mu, &mut hessian));
+    for (row, size) in hessian.chunks(n).zip(&scale) {
+        add(&row.iter().map(|second| second * size).collect::<Vec<_>>());
+    }
+    Some([&[values.objective], &values.equalities[..], &values.inequalities, &found].concat())
+}
+
+fn is_the_same_program(gait: &dyn Gait, criterion: Criterion, (length, mass): (f64, f64)) {
+    let mut rng = fastrand::Rng::with_seed(3);
+    let by = Factors::new(length, mass);
+    let scale = Cycle::new(gait, criterion, usual(gait)).scale();
+    let (natural, expected) = loop {
+        let theta = theta(&walk(gait, &Plan::random(gait, &mut rng), usual(gait)));
+        let natural: Vec<f64> = theta.iter().zip(&scale).map(|(x, size)| x / size).collect();
+        if let Some(expected) = program(gait, criterion, usual(gait), &natural) {
+            break (natural, expected);
+        }
+    };
+    let found = program(&Copy::new(gait, by), criterion, usual(gait) * by.speed(), &natural).unwrap();
+    assert_eq!(found.len(), expected.len());
+    let name = gait.description().key;
+    for (k, (found, expected)) in found.iter().zip(&expected).enumerate() {
+        assert!(found == expected && found.is_finite(), "{name} {criterion:?} by {by:?}: {k}: {found}, not {expected}");
+    }
+}
+
 /// Other copies differ by rounding.
 fn has_the_same_cost(gait: &dyn Gait, criterion: Criterion, sizes: &[(f64, f64)]) {
     let name = gait.description().key;
@@ -98,6 +153,16 @@ fn copies_by_powers_of_two_have_the_same_bits() {
     has_the_same_bits(named("amble"), Criterion::Torque, large);
     has_the_same_bits(named("curvet"), Criterion::Torque, small);
     has_the_same_bits(named("rabbit/walk"), Criterion::Energy, large);
+}
+
+#[test]
+fn copies_by_powers_of_two_are_the_same_program() {
+    for gait in GAITS {
+        for criterion in Criterion::ALL {
+            is_the_same_program(*gait, criterion, (2f64.powi(-10), 2f64.powi(20)));
+            is_the_same_program(*gait, criterion, (2f64.powi(6), 2f64.powi(-31)));
+        }
+    }
 }
 
 #[test]

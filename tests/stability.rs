@@ -1,7 +1,7 @@
 //! Orbital stability: the linearized return maps against steps that are really simulated.
 
 use piaffe::gaits::GAITS;
-use piaffe::model::{Description, Gait, HalfSteps, UP};
+use piaffe::model::{Description, Gait, Mode, Then, UP};
 use piaffe::motion::{Criterion, Motion};
 use piaffe::search::multi_start::{Settings, search};
 use piaffe::stability::{PhaseTracking, TimeTracking, stability};
@@ -52,16 +52,25 @@ impl<'a> Tracked<'a> {
         [q, qd]
     }
 
-    /// q, or its rates, as the next half step names them.
-    fn renamed(&self, values: &[f64]) -> Vec<f64> {
-        let name = |k| if self.d.half_steps == HalfSteps::Mirrored { self.d.swapped(k) } else { (k, 1.0) };
+    fn mode(&self, phase: usize) -> Mode {
+        self.d.phases[phase].mode
+    }
+
+    /// The leg whose foot lands at the end of a half step.
+    fn lands(&self, phase: usize) -> usize {
+        self.d.transition(phase).lands().unwrap()
+    }
+
+    /// q, or its rates, as the half step after `phase` names them.
+    fn renamed(&self, phase: usize, values: &[f64]) -> Vec<f64> {
+        let name = |k| self.d.renamed(phase, k);
         (0..values.len()).map(name).map(|(from, sign)| sign * values[from]).collect()
     }
 
     /// f1, f2, σ, c, σ̇ for these velocities.
     fn terms(&self, phase: usize, q: &[f64], qd: &[f64]) -> [f64; 5] {
         let mut terms = [0.0; 5];
-        self.gait.momentum_terms(phase, q, qd, &mut terms);
+        self.gait.momentum_terms(self.mode(phase), q, qd, &mut terms);
         terms
     }
 
@@ -78,9 +87,10 @@ impl<'a> Tracked<'a> {
 
     fn height(&self, at: &At) -> f64 {
         let [q, _] = self.posture(at.phase, at.time, at.beta);
-        let mut placement = self.d.shapes.placement.zeros();
-        self.gait.placement(at.phase, &q, &mut placement);
-        self.d.shapes.placement.swing.of(&placement)[UP]
+        let (mode, shape) = (self.mode(at.phase), &self.d.shapes.stance.placement);
+        let mut placement = shape.zeros();
+        self.gait.placement(mode, &q, &mut placement);
+        shape.swing.of(&placement)[UP]
     }
 
     /// Follows the motion until the foot is on the ground, near the gait's time.
@@ -104,10 +114,11 @@ impl<'a> Tracked<'a> {
         qd[self.d.unactuated] = (at.sigma - f2) / f1;
         let nc = self.d.positions();
         let mut velocity = vec![0.0; nc];
-        self.gait.platform_velocity(at.phase, &q, &qd, &mut velocity);
+        self.gait.platform_velocity(self.mode(at.phase), &q, &qd, &mut velocity);
         let mut impact = self.d.shapes.impact.zeros();
-        self.gait.impact(1 - at.phase, &q, &[&velocity[..], &qd].concat(), &mut impact);
-        let (q, qd) = (self.renamed(&q), self.renamed(&self.d.shapes.impact.xd_plus.of(&impact)[nc..]));
+        self.gait.impact(self.lands(at.phase), &q, &[&velocity[..], &qd].concat(), &mut impact);
+        let (q, qd) =
+            (self.renamed(at.phase, &q), self.renamed(at.phase, &self.d.shapes.impact.xd_plus.of(&impact)[nc..]));
         let phase = (at.phase + 1) % self.durations.len();
         let sigma = self.terms(phase, &q, &qd)[2];
         let time = if self.restarts { 0.0 } else { at.time - self.durations[at.phase] };
@@ -157,9 +168,9 @@ fn differences(tracked: &Tracked, motion: &Motion) -> [f64; 2] {
     };
     let ([a, c], [b, d]) = (column(h, 0.0), column(0.0, h));
     let (trace, determinant) = (a + d, a * d - b * c);
-    match tracked.d.half_steps {
-        HalfSteps::Distinct => [trace, determinant],
-        HalfSteps::Mirrored => [trace * trace - 2.0 * determinant, determinant * determinant],
+    match tracked.d.then {
+        Then::Repeat => [trace, determinant],
+        Then::Mirrored => [trace * trace - 2.0 * determinant, determinant * determinant],
     }
 }
 
@@ -208,7 +219,7 @@ impl Driven<'_> {
             };
             let commanded: Vec<f64> = (0..d.prescribed()).map(wanted).collect();
             let mut inverse = [0.0; 12];
-            self.tracked.gait.inverse(0, q, qd, &commanded, &mut inverse);
+            self.tracked.gait.inverse(Mode::Stance(0), q, qd, &commanded, &mut inverse);
             let mut rate = [0.0; 8];
             rate[..4].copy_from_slice(qd);
             rate[4..].copy_from_slice(&inverse[2..6]);
@@ -219,7 +230,7 @@ impl Driven<'_> {
 
     fn height(&self, y: &Whole) -> f64 {
         let mut placement = [0.0; 20];
-        self.tracked.gait.placement(0, &y[..4], &mut placement);
+        self.tracked.gait.placement(Mode::Stance(0), &y[..4], &mut placement);
         placement[3]
     }
 
@@ -239,7 +250,7 @@ impl Driven<'_> {
         }
         let y = self.until(before, 0.9 * duration, early);
         let mut velocity = [0.0; 2];
-        self.tracked.gait.platform_velocity(0, &y[..4], &y[4..], &mut velocity);
+        self.tracked.gait.platform_velocity(Mode::Stance(0), &y[..4], &y[4..], &mut velocity);
         let mut impact = [0.0; 8];
         self.tracked.gait.impact(1, &y[..4], &[&velocity, &y[4..]].concat(), &mut impact);
         let name = |k: usize| self.tracked.d.swapped(k).0;
@@ -316,12 +327,12 @@ fn along_the_path(tracked: &Tracked, motion: &Motion, phase: usize, entry: f64) 
     let share = sigma / tracked.terms(phase, &q, &qd)[2];
     let qd: Vec<f64> = qd.iter().map(|rate| share * rate).collect();
     let mut velocity = vec![0.0; tracked.d.positions()];
-    tracked.gait.platform_velocity(phase, &q, &qd, &mut velocity);
+    tracked.gait.platform_velocity(tracked.mode(phase), &q, &qd, &mut velocity);
     let landed = &tracked.d.shapes.impact;
     let mut impact = landed.zeros();
-    tracked.gait.impact(1 - phase, &q, &[&velocity[..], &qd].concat(), &mut impact);
-    let (q, qd) = (tracked.renamed(&q), tracked.renamed(&landed.xd_plus.of(&impact)[velocity.len()..]));
-    Some(tracked.terms((phase + 1) % tracked.d.phases(), &q, &qd)[2])
+    tracked.gait.impact(tracked.lands(phase), &q, &[&velocity[..], &qd].concat(), &mut impact);
+    let (q, qd) = (tracked.renamed(phase, &q), tracked.renamed(phase, &landed.xd_plus.of(&impact)[velocity.len()..]));
+    Some(tracked.terms((phase + 1) % tracked.d.phases.len(), &q, &qd)[2])
 }
 
 #[test]
@@ -339,7 +350,7 @@ fn the_map_of_phase_tracking_is_that_of_simulated_steps() {
         let sigma = tracked.terms(0, &q, &qd)[2];
         let twice = |share: f64| {
             let once = along_the_path(&tracked, &motion, 0, share * sigma)?;
-            Some(along_the_path(&tracked, &motion, 1 % d.phases(), once)? / sigma)
+            Some(along_the_path(&tracked, &motion, 1 % d.phases.len(), once)? / sigma)
         };
         // Affine in σ²: deviations need not be small.
         for share in [0.5 * (1.0 + slowest_entry), 1.3_f64] {

@@ -1,7 +1,7 @@
 //! A walk is a motion in the world: real feet stand still, steps follow each other, velocities are derivatives.
 
 use piaffe::gaits::GAITS;
-use piaffe::model::Gait;
+use piaffe::model::{Gait, Mode};
 use piaffe::motion::{Criterion, Motion};
 use piaffe::search::multi_start::{Settings, search};
 use piaffe::verify::verify;
@@ -32,14 +32,14 @@ fn distance(a: Point, b: Point) -> f64 {
 fn real_feet_in_support_stand_still_on_the_ground() {
     for (_, _, walk) in walks(40) {
         let d = walk.description;
-        for h in 0..2 {
-            let half: Vec<_> = walk.moments.iter().filter(|m| m.half_step == h).collect();
+        for (k, phase) in walk.phases.iter().enumerate() {
+            let moments: Vec<_> = walk.moments.iter().filter(|m| m.phase == k).collect();
             for leg in 0..2 {
                 for member in 0..d.legs[leg].members.len() {
-                    let foot = |k: usize| *half[k].chain(d, leg, member).last().unwrap();
-                    let moved = (0..half.len()).map(|k| distance(foot(k), foot(0))).fold(0.0, f64::max);
-                    let height = (0..half.len()).map(|k| foot(k)[1]).fold(0.0, f64::max);
-                    if leg == walk.half_steps[h].leg {
+                    let foot = |k: usize| *moments[k].chain(d, leg, member).last().unwrap();
+                    let moved = (0..moments.len()).map(|k| distance(foot(k), foot(0))).fold(0.0, f64::max);
+                    let height = (0..moments.len()).map(|k| foot(k)[1]).fold(0.0, f64::max);
+                    if phase.mode == Mode::Stance(leg) {
                         assert!(moved < 1e-8 && height < 1e-8, "{}: foot slips by {moved}", d.gait);
                     } else {
                         assert!(moved > 0.01 && height > 0.003, "{}: foot does not swing", d.gait);
@@ -54,12 +54,11 @@ fn real_feet_in_support_stand_still_on_the_ground() {
 fn a_virtual_foot_is_the_mean_of_its_real_feet_and_that_of_the_kernel() {
     for (_, _, walk) in walks(10) {
         let d = walk.description;
-        for m in &walk.moments {
-            let swings = 1 - m.stance;
+        for (m, swings) in walk.moments.iter().flat_map(|m| m.mode.swinging().map(move |leg| (m, leg))) {
             let foot = *m.virtual_chain(d, swings).last().unwrap();
             // The kernels of a planar gait do not know how far beside its plane a leg is.
-            let known = if d.lateral { foot } else { [foot[0], foot[1], m.swing[2]] };
-            assert!(distance(known, m.swing) < 1e-12, "{}", d.gait);
+            let known = if d.lateral { foot } else { [foot[0], foot[1], m.feet[swings][2]] };
+            assert!(distance(known, m.feet[swings]) < 1e-12, "{}", d.gait);
             let members = d.legs[swings].members.len();
             let feet = (0..members).map(|i| *m.chain(d, swings, i).last().unwrap());
             let mean = feet.fold([0.0; 3], |a, f| [0, 1, 2].map(|k| a[k] + f[k] / members as f64));
@@ -87,7 +86,7 @@ fn steps_follow_each_other_at_the_mean_speed() {
         assert_eq!(before.time, after.time);
         assert!(distance(before.platform[0], after.platform[0]) < 1e-7, "{}", d.gait);
         assert!(before.q.iter().zip(&after.q).all(|(a, b)| (a - b).abs() < 1e-7), "{}", d.gait);
-        assert_eq!(walk.half_steps[0].duration, motion.half_steps[0].duration);
+        assert_eq!(walk.phases[0].duration, motion.half_steps[0].duration);
     }
 }
 
@@ -95,9 +94,9 @@ fn steps_follow_each_other_at_the_mean_speed() {
 fn velocities_and_accelerations_are_derivatives() {
     for (gait, motion, _) in walks(2) {
         let walk = Walk::even(gait, &motion, 2000).unwrap();
-        for (h, half) in walk.half_steps.iter().enumerate() {
-            let moments: Vec<_> = walk.moments.iter().filter(|m| m.half_step == h).collect();
-            let dt = half.duration / 2000.0;
+        for (index, phase) in walk.phases.iter().enumerate() {
+            let moments: Vec<_> = walk.moments.iter().filter(|m| m.phase == index).collect();
+            let dt = phase.duration / 2000.0;
             for k in (100..1900).step_by(300) {
                 let [before, now, after] = [k - 1, k, k + 1].map(|k| moments[k]);
                 let name = walk.description.gait;

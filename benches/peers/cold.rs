@@ -68,7 +68,7 @@ fn numbers(d: &Description) -> Value {
     let l = &d.limits;
     json!({"gravity": d.gravity, "lateral": d.lateral, "order": d.polynomial_order, "unactuated": d.unactuated,
         "rotation": match d.rotation { Rotation::None => Value::Null, Rotation::Roll => json!(0), Rotation::Pitch => json!(2) },
-        "phases": d.phases(), "bodies": bodies, "joints": joints, "legs": legs, "swapped": swapped,
+        "phases": d.phases.len(), "bodies": bodies, "joints": joints, "legs": legs, "swapped": swapped,
         "friction": l.friction, "min_vertical_force": l.min_vertical_force, "swing_clearance": l.swing_clearance,
-        "duration": l.half_step_duration, "min_height": l.min_platform_height})
+        "durations": d.phases.iter().map(|phase| phase.duration).collect::<Vec<_>>(), "min_height": l.min_platform_height})
 }

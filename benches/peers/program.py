@@ -318,5 +318,5 @@ class Program:
     def arguments(self, motion):
         lower, upper = np.full(self.size, -np.inf), np.full(self.size, np.inf)
         for phase in range(self.model.d["phases"]):
-            lower[self.place["T", phase]], upper[self.place["T", phase]] = self.model.d["duration"]
+            lower[self.place["T", phase]], upper[self.place["T", phase]] = self.model.d["durations"][phase]
         return dict(x0=self.start(motion), lbx=lower, ubx=upper, lbg=self.lower, ubg=self.upper)

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{FAMILIES, GAITS, files, specification};
+use common::{FAMILIES, GAITS, files, specification, with_phases};
 use piaffe_codegen::mechanism::{Family, Lever, Mechanism, levers, parameters};
 use piaffe_codegen::spec::{Gait, RobotFile, parse_gait, parse_robot};
 
@@ -106,6 +106,18 @@ fn every_lever_keeps_the_gait(robot: &RobotFile, text: &str) -> Vec<Lever> {
         }
     }
     levers
+}
+
+/// Each phase has its own; half steps have one for all.
+#[test]
+fn durations_are_called_as_they_are_written() {
+    let run = with_phases("trot", &[Some(1), None], "mirrored");
+    let levers = every_lever_keeps_the_gait(&robot("trot"), &run.text);
+    let durations: Vec<&str> =
+        levers.iter().map(|l| l.name.as_str()).filter(|name| name.contains("duration")).collect();
+    let expected =
+        ["phases.1", "phases.2"].map(|phase| ["shortest", "longest"].map(|end| format!("{phase}.duration.{end}")));
+    assert_eq!(durations, expected.concat());
 }
 
 #[test]

@@ -32,8 +32,8 @@ fn copy(key: &str, length: f64, mass: f64) -> (Robot, Gait) {
     let limits = &mut gait.limits;
     limits.min_vertical_force *= mass;
     limits.swing_clearance *= length;
-    scale(&mut limits.half_step_duration, time);
     limits.min_platform_height *= length;
+    gait.phases.list.iter_mut().for_each(|phase| scale(&mut phase.duration, time));
     (robot, gait)
 }
 

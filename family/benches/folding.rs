@@ -3,7 +3,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use piaffe::gaits::GAITS;
-use piaffe::model::Gait;
+use piaffe::model::{Gait, Mode};
 use piaffe::motion::Criterion::Energy;
 use piaffe::search::{local::Task, multi_start::start};
 use piaffe::sqp::Control;
@@ -19,9 +19,10 @@ fn folding(c: &mut Criterion) {
         let parametric: &dyn Gait = &*member;
         let d = folded.description();
         let (nq, np) = (d.orientations(), d.positions());
+        let lands = d.transition(0).lands().unwrap_or_default();
         let vector = |n: usize, first: f64| -> Vec<f64> { (0..n).map(|k| first - 0.2 * k as f64).collect() };
         let (q, qd, qdd) = (vector(nq, 0.3), vector(nq, 1.0), vector(nq, 2.0));
-        let weights = &d.shapes.curvature;
+        let weights = &d.shapes.stance.curvature;
         let (n, phi, others) = (vector(weights.n.len, 1.0), vector(np, 0.5), vector(weights.others.len, 0.7));
         let mut out = vec![0.0; 4096];
         let mut group = c.benchmark_group(format!("folding/{}", d.gait));
@@ -30,13 +31,15 @@ fn folding(c: &mut Criterion) {
                 b.iter(|| gait.inertia_and_bias(black_box(&q), black_box(&qd), black_box(&mut out)));
             });
             group.bench_function(format!("torques, reaction and Jacobian, {how}"), |b| {
-                b.iter(|| gait.inverse_jacobian(0, black_box(&q), &qd, &qdd, black_box(&mut out)));
+                b.iter(|| gait.inverse_jacobian(Mode::Stance(0), black_box(&q), &qd, &qdd, black_box(&mut out)));
             });
             group.bench_function(format!("curvature, {how}"), |b| {
-                b.iter(|| gait.curvature(0, black_box(&q), &qd, &qdd, &n, &phi, &others, black_box(&mut out)));
+                b.iter(|| {
+                    gait.curvature(Mode::Stance(0), black_box(&q), &qd, &qdd, &n, &phi, &others, black_box(&mut out))
+                });
             });
             group.bench_function(format!("touchdown, {how}"), |b| {
-                b.iter(|| gait.touchdown(0, black_box(&q), &qd, black_box(&mut out)));
+                b.iter(|| gait.touchdown(lands, black_box(&q), &qd, black_box(&mut out)));
             });
             group.sample_size(10).bench_function(format!("one descent, {how}"), |b| {
                 let theta = start(gait, Energy, 0.6, 1, 0);

@@ -1,7 +1,7 @@
 //! Froude copies: a gait of a robot of the same shape and build, of another size and weight.
 
 use piaffe::model::shape::{Block, LateGradient, MomentumTerms};
-use piaffe::model::{Body, Description, Gait, Spot};
+use piaffe::model::{Body, Description, Gait, Mode, Spot};
 
 /// By what factor each dimension grows; gravity stays.
 #[derive(Clone, Copy, Debug)]
@@ -22,6 +22,10 @@ impl Factors {
 
     fn rate(&self) -> f64 {
         1.0 / self.time
+    }
+
+    fn acceleration(&self) -> f64 {
+        self.length / (self.time * self.time)
     }
 
     pub fn force(&self) -> f64 {
@@ -84,9 +88,9 @@ impl<'a> Copy<'a> {
             joint.loaded_speed *= by.rate();
             joint.rotor_inertia *= by.inertia();
         }
+        d.phases.to_mut().iter_mut().for_each(|phase| phase.duration = phase.duration.map(|t| t * by.time));
         d.limits.min_vertical_force *= by.force();
         d.limits.swing_clearance *= by.length;
-        d.limits.half_step_duration = d.limits.half_step_duration.map(|t| t * by.time);
         d.limits.min_platform_height *= by.length;
         d.limits.body_clearance *= by.length;
         Copy { gait, description: d, by }
@@ -97,36 +101,53 @@ impl<'a> Copy<'a> {
         qd.iter().map(|x| x * self.by.time).collect()
     }
 
+    /// Velocities of places, likewise.
+    fn velocities(&self, v: &[f64]) -> Vec<f64> {
+        v.iter().map(|x| x / self.by.speed()).collect()
+    }
+
     fn accelerations(&self, qdd: &[f64]) -> Vec<f64> {
         qdd.iter().map(|x| x * self.by.time * self.by.time).collect()
     }
 
-    /// Scales rows of a Jacobian whose columns are as many q, q̇ and so on; `units` of the rows.
-    fn jacobian(&self, out: &mut [f64], units: &[f64], orders: usize) {
-        let nq = self.description.orientations();
-        for (row, unit) in out.chunks_mut(orders * nq).zip(units) {
-            for (order, part) in row.chunks_mut(nq).enumerate() {
-                let factor = unit * self.by.time.powi(order as i32);
-                part.iter_mut().for_each(|x| *x *= factor);
+    /// Columns of a Jacobian in q, q̇ and so on: how many are of each, and by what a derivative in them grows.
+    fn columns(&self, orders: usize) -> Vec<(usize, f64)> {
+        (0..orders).map(|order| (self.description.orientations(), self.by.time.powi(order as i32))).collect()
+    }
+
+    /// Columns of one in what a landing is a function of: q, the mass centre's velocity, q̇.
+    fn columns_of_landing(&self) -> Vec<(usize, f64)> {
+        let velocity = (self.description.positions(), 1.0 / self.by.speed());
+        let of_state = self.columns(2);
+        vec![of_state[0], velocity, of_state[1]]
+    }
+
+    /// Scales rows of a Jacobian; `units` of the rows.
+    fn jacobian(&self, out: &mut [f64], units: &[f64], columns: &[(usize, f64)]) {
+        let size = columns.iter().map(|(count, _)| count).sum();
+        for (row, unit) in out.chunks_mut(size).zip(units) {
+            let mut rest = row;
+            for (count, factor) in columns {
+                let (part, others) = rest.split_at_mut(*count);
+                scale(part, unit * factor);
+                rest = others;
             }
         }
     }
 
-    /// Gradient and second derivatives of a weighted sum.
-    fn second(&self, out: &mut [f64]) {
-        let (nq, t, shape) = (self.description.orientations(), self.by.time, &self.description.shapes.curvature);
-        let gradient = shape.gradient.of_mut(out);
-        scale(&mut gradient[nq..2 * nq], t);
-        scale(&mut gradient[2 * nq..], t * t);
-        for (block, factor) in [(shape.q_qd, t), (shape.q_qdd, t * t), (shape.qd_qd, t * t)] {
+    /// Gradient and second derivatives of a weighted sum: in (q, q̇, q̈), q·q̇, q·q̈ and q̇·q̇.
+    fn second(&self, out: &mut [f64], [gradient, q_qd, q_qdd, qd_qd]: [Block; 4]) {
+        let t = self.by.time;
+        self.jacobian(gradient.of_mut(out), &[1.0], &self.columns(3));
+        for (block, factor) in [(q_qd, t), (q_qdd, t * t), (qd_qd, t * t)] {
             scale(block.of_mut(out), factor);
         }
     }
 
-    /// Scales values and their gradients in q, q̇ and so on.
-    fn with_gradients(&self, out: &mut [f64], unit: f64, [values, rows]: [Block; 2], orders: usize) {
+    /// Scales values and their gradients.
+    fn with_gradients(&self, out: &mut [f64], unit: f64, [values, rows]: [Block; 2], columns: &[(usize, f64)]) {
         scale(values.of_mut(out), unit);
-        self.jacobian(rows.of_mut(out), &vec![unit; values.len()], orders);
+        self.jacobian(rows.of_mut(out), &vec![unit; values.len()], columns);
     }
 }
 
@@ -162,87 +183,87 @@ impl Gait for Copy<'_> {
         foot_jacobian(leg: usize, q: &[f64]);
         foot_bias(leg: usize, q: &[f64], qd: &[f64]);
         angular_momentum(leg: usize, x: &[f64], xd: &[f64]);
-        reduced(leg: usize, q: &[f64], qd: &[f64]);
-        forward(leg: usize, q: &[f64], qd: &[f64], gamma: &[f64]);
+        reduced(mode: Mode, q: &[f64], qd: &[f64]);
+        forward(mode: Mode, q: &[f64], qd: &[f64], gamma: &[f64]);
         impact(leg: usize, q: &[f64], xd: &[f64]);
         impact_both(q: &[f64], xd: &[f64]);
     }
 
-    fn platform_velocity(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]) {
-        self.gait.platform_velocity(leg, q, &self.rates(qd), out);
+    fn platform_velocity(&self, mode: Mode, q: &[f64], qd: &[f64], out: &mut [f64]) {
+        self.gait.platform_velocity(mode, q, &self.rates(qd), out);
         scale(out, self.by.speed());
     }
 
-    fn momentum_terms(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]) {
-        self.gait.momentum_terms(leg, q, &self.rates(qd), out);
+    fn momentum_terms(&self, mode: Mode, q: &[f64], qd: &[f64], out: &mut [f64]) {
+        self.gait.momentum_terms(mode, q, &self.rates(qd), out);
         let by = &self.by;
-        let MomentumTerms { f1, f2, sigma, c, sigmadot, .. } = self.description.shapes.momentum_terms;
+        let MomentumTerms { f1, f2, sigma, c, sigmadot, .. } = self.description.shape(mode).momentum_terms;
         let (inertia, turn) = (by.inertia(), by.turn());
         for (block, unit) in [(f1, inertia), (f2, turn), (sigma, turn), (c, by.length), (sigmadot, by.torque())] {
             scale(block.of_mut(out), unit);
         }
     }
 
-    fn inverse(&self, leg: usize, q: &[f64], qd: &[f64], actuated_dd: &[f64], out: &mut [f64]) {
-        self.gait.inverse(leg, q, &self.rates(qd), &self.accelerations(actuated_dd), out);
-        let (shape, nc) = (&self.description.shapes.inverse, self.description.positions());
+    fn inverse(&self, mode: Mode, q: &[f64], qd: &[f64], actuated_dd: &[f64], out: &mut [f64]) {
+        self.gait.inverse(mode, q, &self.rates(qd), &self.accelerations(actuated_dd), out);
+        let (shape, nc) = (&self.description.shape(mode).inverse, self.description.positions());
         let (by, square) = (&self.by, self.by.time * self.by.time);
         let (p, q) = shape.xdd.of_mut(out).split_at_mut(nc);
-        scale(p, by.length / square);
+        scale(p, by.acceleration());
         scale(q, 1.0 / square);
         scale(shape.gamma.of_mut(out), by.torque());
         scale(shape.f.of_mut(out), by.force());
     }
 
-    fn momentum(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]) {
-        self.gait.momentum(leg, q, &self.rates(qd), out);
-        let shape = &self.description.shapes.momentum;
-        self.with_gradients(out, self.by.turn(), [shape.sigma, shape.sigma_w], 2);
+    fn momentum(&self, mode: Mode, q: &[f64], qd: &[f64], out: &mut [f64]) {
+        self.gait.momentum(mode, q, &self.rates(qd), out);
+        let shape = &self.description.shape(mode).momentum;
+        self.with_gradients(out, self.by.turn(), [shape.sigma, shape.sigma_w], &self.columns(2));
     }
 
-    fn inverse_jacobian(&self, leg: usize, q: &[f64], qd: &[f64], actuated_dd: &[f64], out: &mut [f64]) {
-        self.gait.inverse_jacobian(leg, q, &self.rates(qd), &self.accelerations(actuated_dd), out);
-        let (by, shape) = (&self.by, &self.description.shapes.inverse_jacobian);
+    fn inverse_jacobian(&self, mode: Mode, q: &[f64], qd: &[f64], actuated_dd: &[f64], out: &mut [f64]) {
+        self.gait.inverse_jacobian(mode, q, &self.rates(qd), &self.accelerations(actuated_dd), out);
+        let (by, shape) = (&self.by, &self.description.shape(mode).inverse_jacobian);
         scale(shape.beta_dd.of_mut(out), 1.0 / (by.time * by.time));
-        self.with_gradients(out, by.torque(), [shape.gamma, shape.gamma_w], 3);
-        self.with_gradients(out, by.force(), [shape.f, shape.f_w], 3);
-        self.jacobian(shape.balance_w.of_mut(out), &[by.torque()], 3);
+        self.with_gradients(out, by.torque(), [shape.gamma, shape.gamma_w], &self.columns(3));
+        self.with_gradients(out, by.force(), [shape.f, shape.f_w], &self.columns(3));
+        self.jacobian(shape.balance_w.of_mut(out), &[by.torque()], &self.columns(3));
     }
 
-    fn placement(&self, leg: usize, q: &[f64], out: &mut [f64]) {
-        self.gait.placement(leg, q, out);
+    fn placement(&self, mode: Mode, q: &[f64], out: &mut [f64]) {
+        self.gait.placement(mode, q, out);
         scale(out, self.by.length);
     }
 
-    fn heights(&self, leg: usize, q: &[f64], out: &mut [f64]) {
-        self.gait.heights(leg, q, out);
+    fn heights(&self, mode: Mode, q: &[f64], out: &mut [f64]) {
+        self.gait.heights(mode, q, out);
         scale(out, self.by.length);
     }
 
-    fn heights_curvature(&self, leg: usize, q: &[f64], weights: &[f64], out: &mut [f64]) {
+    fn heights_curvature(&self, mode: Mode, q: &[f64], weights: &[f64], out: &mut [f64]) {
         let weights: Vec<f64> = weights.iter().map(|w| w * self.by.length).collect();
-        self.gait.heights_curvature(leg, q, &weights, out);
+        self.gait.heights_curvature(mode, q, &weights, out);
     }
 
-    fn swing_velocity(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]) {
-        self.gait.swing_velocity(leg, q, &self.rates(qd), out);
-        let shape = &self.description.shapes.swing_velocity;
-        self.with_gradients(out, self.by.speed(), [shape.v, shape.v_w], 2);
+    fn swing_velocity(&self, mode: Mode, q: &[f64], qd: &[f64], out: &mut [f64]) {
+        self.gait.swing_velocity(mode, q, &self.rates(qd), out);
+        let shape = &self.description.shape(mode).swing_velocity;
+        self.with_gradients(out, self.by.speed(), [shape.v, shape.v_w], &self.columns(2));
     }
 
-    fn early(&self, leg: usize, actuated: &[f64], actuated_d: &[f64], out: &mut [f64]) {
-        self.gait.early(leg, actuated, &self.rates(actuated_d), out);
+    fn early(&self, mode: Mode, actuated: &[f64], actuated_d: &[f64], out: &mut [f64]) {
+        self.gait.early(mode, actuated, &self.rates(actuated_d), out);
     }
 
-    fn late(&self, leg: usize, early: &[f64], beta: f64, out: &mut [f64]) {
-        self.gait.late(leg, early, beta, out);
+    fn late(&self, mode: Mode, early: &[f64], beta: f64, out: &mut [f64]) {
+        self.gait.late(mode, early, beta, out);
         let units = [self.by.inertia(), self.by.turn(), self.by.torque()];
         out.iter_mut().zip(units.into_iter().cycle()).for_each(|(x, unit)| *x *= unit);
     }
 
-    fn late_gradient(&self, leg: usize, early: &[f64], beta: f64, out: &mut [f64]) {
-        self.gait.late_gradient(leg, early, beta, out);
-        let LateGradient { f1_q, f2_q, f2_qd, moment_q, .. } = self.description.shapes.late_gradient;
+    fn late_gradient(&self, mode: Mode, early: &[f64], beta: f64, out: &mut [f64]) {
+        self.gait.late_gradient(mode, early, beta, out);
+        let LateGradient { f1_q, f2_q, f2_qd, moment_q, .. } = self.description.shape(mode).late_gradient;
         let inertia = self.by.inertia();
         for (block, unit) in [(f1_q, inertia), (f2_q, self.by.turn()), (f2_qd, inertia), (moment_q, self.by.torque())] {
             scale(block.of_mut(out), unit);
@@ -252,17 +273,17 @@ impl Gait for Copy<'_> {
     fn touchdown(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]) {
         self.gait.touchdown(leg, q, &self.rates(qd), out);
         let (by, s) = (&self.by, &self.description.shapes.touchdown);
-        self.with_gradients(out, by.rate(), [s.qd_plus, s.qd_plus_w], 2);
-        self.with_gradients(out, by.impulse(), [s.impulse, s.impulse_w], 2);
-        self.with_gradients(out, by.speed(), [s.leaving, s.leaving_w], 2);
-        self.with_gradients(out, by.speed(), [s.landing, s.landing_w], 2);
-        self.with_gradients(out, by.turn(), [s.couple, s.couple_w], 2);
-        self.with_gradients(out, by.turn(), [s.pitch, s.pitch_w], 2);
+        self.with_gradients(out, by.rate(), [s.qd_plus, s.qd_plus_w], &self.columns(2));
+        self.with_gradients(out, by.impulse(), [s.impulse, s.impulse_w], &self.columns(2));
+        self.with_gradients(out, by.speed(), [s.leaving, s.leaving_w], &self.columns(2));
+        self.with_gradients(out, by.speed(), [s.landing, s.landing_w], &self.columns(2));
+        self.with_gradients(out, by.turn(), [s.couple, s.couple_w], &self.columns(2));
+        self.with_gradients(out, by.turn(), [s.pitch, s.pitch_w], &self.columns(2));
     }
 
     fn curvature(
         &self,
-        leg: usize,
+        mode: Mode,
         q: &[f64],
         qd: &[f64],
         qdd: &[f64],
@@ -274,7 +295,7 @@ impl Gait for Copy<'_> {
         let by = &self.by;
         let n: Vec<f64> = n.iter().map(|x| x * by.torque()).collect();
         let phi: Vec<f64> = phi.iter().map(|x| x * by.force()).collect();
-        let (to, mut others) = (&self.description.shapes.curvature.others, others.to_vec());
+        let (to, mut others) = (&self.description.shape(mode).curvature.others, others.to_vec());
         for (block, unit) in [
             (to.sigma, by.turn()),
             (to.sigmad, by.torque()),
@@ -285,8 +306,9 @@ impl Gait for Copy<'_> {
         ] {
             scale(block.of_mut(&mut others), unit);
         }
-        self.gait.curvature(leg, q, &self.rates(qd), &self.accelerations(qdd), &n, &phi, &others, out);
-        self.second(out);
+        self.gait.curvature(mode, q, &self.rates(qd), &self.accelerations(qdd), &n, &phi, &others, out);
+        let shape = &self.description.shape(mode).curvature;
+        self.second(out, [shape.gradient, shape.q_qd, shape.q_qdd, shape.qd_qd]);
     }
 
     fn touchdown_curvature(&self, leg: usize, q: &[f64], qd: &[f64], xi: &[f64], outputs: &[f64], out: &mut [f64]) {
@@ -307,18 +329,65 @@ impl Gait for Copy<'_> {
         scale(shape.q_plus.of_mut(out), by.time);
     }
 
-    fn sharing(&self, leg: usize, q: &[f64], qd: &[f64], qdd: &[f64], out: &mut [f64]) {
-        self.gait.sharing(leg, q, &self.rates(qd), &self.accelerations(qdd), out);
-        let (by, shape) = (&self.by, &self.description.shapes.sharing);
-        self.with_gradients(out, by.torque(), [shape.moment, shape.moment_w], 3);
-        self.with_gradients(out, by.length, [shape.levers, shape.levers_w], 3);
+    fn landing(&self, leg: usize, q: &[f64], v: &[f64], qd: &[f64], out: &mut [f64]) {
+        self.gait.landing(leg, q, &self.velocities(v), &self.rates(qd), out);
+        let (by, s, columns) = (&self.by, &self.description.shapes.landing, self.columns_of_landing());
+        self.with_gradients(out, by.rate(), [s.qd_plus, s.qd_plus_w], &columns);
+        self.with_gradients(out, by.impulse(), [s.impulse, s.impulse_w], &columns);
+        self.with_gradients(out, by.speed(), [s.landing, s.landing_w], &columns);
     }
 
-    fn sharing_curvature(&self, leg: usize, q: &[f64], qd: &[f64], qdd: &[f64], weights: &[f64], out: &mut [f64]) {
-        let (to, mut weights) = (&self.description.shapes.sharing_curvature.weights, weights.to_vec());
+    fn landing_curvature(
+        &self,
+        leg: usize,
+        q: &[f64],
+        v: &[f64],
+        qd: &[f64],
+        xi: &[f64],
+        outputs: &[f64],
+        out: &mut [f64],
+    ) {
+        let xi: Vec<f64> = xi.iter().map(|x| x * self.by.rate()).collect();
+        let (by, shape, mut outputs) = (&self.by, &self.description.shapes.landing_curvature, outputs.to_vec());
+        scale(shape.outputs.impulse.of_mut(&mut outputs), by.impulse());
+        scale(shape.outputs.landing.of_mut(&mut outputs), by.speed());
+        self.gait.landing_curvature(leg, q, &self.velocities(v), &self.rates(qd), &xi, &outputs, out);
+        let columns = self.columns_of_landing();
+        self.jacobian(shape.q_v.of_mut(out), &vec![1.0; q.len()], &columns[1..]);
+        scale(shape.q_plus.of_mut(out), by.time);
+    }
+
+    fn takeoff(&self, leg: usize, q: &[f64], qd: &[f64], qdd: &[f64], out: &mut [f64]) {
+        self.gait.takeoff(leg, q, &self.rates(qd), &self.accelerations(qdd), out);
+        let (by, s) = (&self.by, &self.description.shapes.takeoff);
+        self.with_gradients(out, by.length, [s.r, s.r_q], &self.columns(1));
+        self.with_gradients(out, by.speed(), [s.v, s.v_w], &self.columns(2));
+        self.with_gradients(out, by.acceleration(), [s.lift, s.lift_w], &self.columns(3));
+    }
+
+    fn takeoff_curvature(&self, leg: usize, q: &[f64], qd: &[f64], qdd: &[f64], weights: &[f64], out: &mut [f64]) {
+        let (by, shape, mut weights) = (&self.by, &self.description.shapes.takeoff_curvature, weights.to_vec());
+        let to = &shape.weights;
+        for (block, unit) in [(to.r, by.length), (to.v, by.speed()), (to.lift, by.acceleration())] {
+            scale(block.of_mut(&mut weights), unit);
+        }
+        self.gait.takeoff_curvature(leg, q, &self.rates(qd), &self.accelerations(qdd), &weights, out);
+        self.second(out, [shape.gradient, shape.q_qd, shape.q_qdd, shape.qd_qd]);
+    }
+
+    fn sharing(&self, mode: Mode, q: &[f64], qd: &[f64], qdd: &[f64], out: &mut [f64]) {
+        self.gait.sharing(mode, q, &self.rates(qd), &self.accelerations(qdd), out);
+        let (by, shape) = (&self.by, &self.description.shape(mode).sharing);
+        self.with_gradients(out, by.torque(), [shape.moment, shape.moment_w], &self.columns(3));
+        self.with_gradients(out, by.length, [shape.levers, shape.levers_w], &self.columns(3));
+    }
+
+    fn sharing_curvature(&self, mode: Mode, q: &[f64], qd: &[f64], qdd: &[f64], weights: &[f64], out: &mut [f64]) {
+        let (shape, mut weights) = (&self.description.shape(mode).sharing_curvature, weights.to_vec());
+        let to = &shape.weights;
         scale(to.moment.of_mut(&mut weights), self.by.torque());
         scale(to.levers.of_mut(&mut weights), self.by.length);
-        self.gait.sharing_curvature(leg, q, &self.rates(qd), &self.accelerations(qdd), &weights, out);
-        self.second(out);
+        self.gait.sharing_curvature(mode, q, &self.rates(qd), &self.accelerations(qdd), &weights, out);
+        self.second(out, [shape.gradient, shape.q_qd, shape.q_qdd, shape.qd_qd]);
     }
 }

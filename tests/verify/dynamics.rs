@@ -2,7 +2,7 @@
 
 use crate::motions::{Random, stepping};
 use piaffe::gaits::{GAITS, amble::Amble, trot::Trot};
-use piaffe::model::{Body, Gait};
+use piaffe::model::{Body, Gait, Mode};
 use piaffe::verify::geometry::{Plane, Space};
 use piaffe::verify::{VerifyError, impact::impact, instants::State, multibody::Multibody, numbers::Numbers};
 use piaffe::verify::{support::Support, verify};
@@ -90,8 +90,9 @@ fn single_support_agrees() {
             let mut support = Support::new(d, leg);
             for (q, qd, mut qdd) in states(gait) {
                 let prescribed: Vec<f64> = (0..d.prescribed()).map(|k| qdd[d.prescribed_index(k)]).collect();
-                let generated = filled(np + nq + joints + np, |o| gait.inverse(leg, &q, &qd, &prescribed, o));
-                let f1 = filled(5, |o| gait.momentum_terms(leg, &q, &qd, o))[0];
+                let generated =
+                    filled(np + nq + joints + np, |o| gait.inverse(Mode::Stance(leg), &q, &qd, &prescribed, o));
+                let f1 = filled(5, |o| gait.momentum_terms(Mode::Stance(leg), &q, &qd, o))[0];
                 if f1.abs() < 0.05 {
                     continue; // close to where eq. 10 is singular, both are as inaccurate as they must be
                 }
@@ -183,7 +184,7 @@ fn impact_agrees() {
                 let numeric = impact(d, landing, &q, &qd).unwrap();
                 let generated = filled(n + np, |o| gait.impact(landing, &q, &numeric.before, o));
                 // The velocities before are those with the stance foot at rest.
-                let before = filled(np, |o| gait.platform_velocity(1 - landing, &q, &qd, o));
+                let before = filled(np, |o| gait.platform_velocity(Mode::Stance(1 - landing), &q, &qd, o));
                 compare("Ẋ⁻", gait, &numeric.before[..np], &before);
                 compare("Ẋ⁺, I", gait, &[&numeric.after[..], &numeric.impulse.as_slice()[..np]].concat(), &generated);
             }

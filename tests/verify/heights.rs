@@ -3,7 +3,7 @@
 use crate::motions::Random;
 use piaffe::certificate::certify;
 use piaffe::gaits::GAITS;
-use piaffe::model::{Description, Gait};
+use piaffe::model::{Description, Gait, Mode};
 use piaffe::motion::Motion;
 use piaffe::verify::heights::{Arms, alike};
 use piaffe::verify::{instants::State, numbers::Numbers, support::Support, verify};
@@ -11,9 +11,10 @@ use piaffe::verify::{instants::State, numbers::Numbers, support::Support, verify
 /// The rows of a gait, and the heights of all points, in a posture.
 fn heights(gait: &dyn Gait, leg: usize, q: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let d = gait.description();
-    let mut kernel = vec![f64::NAN; d.shapes.heights.len];
-    gait.heights(leg, q, &mut kernel);
-    let kernel = d.shapes.heights.heights.of(&kernel).to_vec();
+    let shape = &d.shapes.stance.heights;
+    let mut kernel = vec![f64::NAN; shape.len];
+    gait.heights(Mode::Stance(leg), q, &mut kernel);
+    let kernel = shape.heights.of(&kernel).to_vec();
     let mut support = Support::new(d, leg);
     let mut state = State { q: q.to_vec(), ..State::new(d) };
     support.accelerate(&state.q, &state.qd, &mut state.qdd).expect("f1 does not vanish");

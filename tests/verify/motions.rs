@@ -85,7 +85,7 @@ fn half_step(d: &Description, stance: usize, duration: f64) -> HalfStep {
 
 /// A motion with all its half steps, not a cycle.
 pub fn stepping(d: &Description) -> Motion {
-    Motion { half_steps: (0..d.phases()).map(|k| half_step(d, k, 0.15)).collect() }
+    Motion { half_steps: (0..d.phases.len()).map(|k| half_step(d, k, 0.15)).collect() }
 }
 
 /// A trot that is a cycle: initial states from the impact, T and β̇ at the end by Newton's method.

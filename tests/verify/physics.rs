@@ -2,7 +2,7 @@
 
 use crate::motions::{Random, gaits, stepping};
 use nalgebra::Vector3;
-use piaffe::model::{Description, Gait, Rotation};
+use piaffe::model::{Description, Gait, Mode, Rotation};
 use piaffe::verify::{Sample, impact::impact, multibody::Multibody, sample};
 
 const POINTS: usize = 1001;
@@ -49,10 +49,10 @@ fn momentum_about_the_stance_foot_changes_by_gravity_alone() {
         let mut terms = [0.0; 5];
         along(gait, |leg, five, h| {
             let sigma = five.map(|s| {
-                gait.momentum_terms(leg, &s.q, &s.qd, &mut terms);
+                gait.momentum_terms(Mode::Stance(leg), &s.q, &s.qd, &mut terms);
                 terms[2]
             });
-            gait.momentum_terms(leg, &five[2].q, &five[2].qd, &mut terms);
+            gait.momentum_terms(Mode::Stance(leg), &five[2].q, &five[2].qd, &mut terms);
             let (found, moment) = (rate(sigma, h), terms[4]);
             assert!(
                 (found - moment).abs() < 1e-6 * moment.abs().max(1.0),

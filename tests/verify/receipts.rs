@@ -123,7 +123,7 @@ fn limits_are_judged_at_their_place() {
     let tall = changed(&Trot, |d| d.limits.min_platform_height = 0.4);
     assert!(found(&verify(&tall, &motion, base.speed, GRID).unwrap(), "platform height").margin < -0.1);
 
-    let hasty = changed(&Trot, |d| d.limits.half_step_duration = [1.0, 2.0]);
+    let hasty = changed(&Trot, |d| d.phases.to_mut()[0].duration = [1.0, 2.0]);
     assert!(found(&verify(&hasty, &motion, base.speed, GRID).unwrap(), "shortest half step").margin < -0.5);
 
     let stiff = changed(&Trot, |d| {

@@ -64,7 +64,7 @@ fn virtual_power(model: &mut Model, origin: Origin, n: &[Var], phi: &[Var]) -> P
 pub struct Instant {
     /// Weights of the torques of the joints, then of the balance.
     pub n: Vec<Var>,
-    /// Weights of the reaction, if there is one.
+    /// Weights of the reaction; none in flight.
     pub phi: Vec<Var>,
     /// Weights of σ and σ̇, of the heights of the feet in the air, of the platform's x, of the vertical velocities of these feet,
     /// and of the platform's height. In flight there is no σ̇.
@@ -112,7 +112,7 @@ impl Instant {
             self.n.clone(),
             vec![Block::vector("torque", self.n.len() - 1), Block::scalar("balance")],
         );
-        let kernel = if self.phi.is_empty() { kernel } else { kernel.input("phi", self.phi.clone()) };
+        let kernel = kernel.input("phi", self.phi.clone());
         kernel.blocks("others", self.others.clone(), self.blocks.clone())
     }
 }
@@ -130,8 +130,9 @@ pub fn kernel(model: &mut Model, mode: Mode, turn: &Turn) -> Kernel {
              feet, platform's height, all from the mass centre (others)"
         }
     };
-    let kernel = Kernel::new(
-        mode.kernel("curvature"),
+    let kernel = Kernel::of_mode(
+        mode,
+        "curvature",
         format!(
             "Gradient in (q, q̇, q̈) and second derivatives of the sum of all outputs of an instant, each with its weight: \
              {weighted}."

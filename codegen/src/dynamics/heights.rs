@@ -22,8 +22,9 @@ pub fn kernels(model: &mut Model, mode: Mode) -> Vec<Kernel> {
         sum += &(&Poly::from(*weight) * height);
     }
     let gradient: Vec<Poly> = q.iter().map(|s| model.ring.derivative(&sum, *s)).collect();
-    let values = Kernel::new(
-        mode.kernel("heights"),
+    let values = Kernel::of_mode(
+        mode,
+        "heights",
         mode.say(
             "Heights over the ground of joints and corners, those that can be the lowest, with their \
              Jacobian in q.",
@@ -34,8 +35,9 @@ pub fn kernels(model: &mut Model, mode: Mode) -> Vec<Kernel> {
     .input("q", q.clone())
     .vector("heights", heights.clone(), "m, in the order of the description's `lowest`")
     .matrix("heights_q", model.jacobian(&heights, &q), "∂heights/∂q");
-    let curvature = Kernel::new(
-        mode.kernel("heights_curvature"),
+    let curvature = Kernel::of_mode(
+        mode,
+        "heights_curvature",
         "Gradient in q and second derivatives of the sum of these heights, each with its weight.",
     )
     .input("q", q.clone())

@@ -1,6 +1,7 @@
 //! A kernel: inputs, outputs, and what they mean.
 
 use crate::expr::{Poly, Var};
+use crate::mechanism::Mode;
 
 /// A group of expressions evaluated together; becomes one generated function.
 #[derive(Clone, Debug)]
@@ -12,6 +13,8 @@ pub struct Kernel {
     pub outputs: Vec<Output>,
     /// Whether it is also wanted for many states at once.
     pub batched: bool,
+    /// The mode that it is of, if it is of one.
+    pub mode: Option<Mode>,
 }
 
 #[derive(Clone, Debug)]
@@ -105,12 +108,35 @@ impl Input {
 
 impl Kernel {
     pub fn new(name: impl Into<String>, doc: impl Into<String>) -> Kernel {
-        Kernel { name: name.into(), doc: doc.into(), inputs: Vec::new(), outputs: Vec::new(), batched: false }
+        Kernel {
+            name: name.into(),
+            doc: doc.into(),
+            inputs: Vec::new(),
+            outputs: Vec::new(),
+            batched: false,
+            mode: None,
+        }
     }
 
     /// Pairs of terms in its sums, about: what the time to factor it goes by.
     pub fn pairs(&self) -> usize {
         self.outputs.iter().flat_map(|output| &output.values).map(|sum| sum.len() * sum.len()).sum()
+    }
+
+    /// One of the kernels of a mode: what it computes is called `what`.
+    pub fn of_mode(mode: Mode, what: &str, doc: impl Into<String>) -> Kernel {
+        Kernel { mode: Some(mode), ..Kernel::new(mode.kernel(what), doc) }
+    }
+
+    /// What it computes, whichever mode or leg it is of: trait methods are called like this.
+    pub fn base(&self) -> &str {
+        let base = self.name.trim_end_matches(|c: char| c.is_ascii_digit());
+        self.mode.and_then(|mode| base.strip_prefix(mode.prefix())).unwrap_or(base)
+    }
+
+    /// Whether there are twins for the legs.
+    pub fn is_of_leg(&self) -> bool {
+        self.name.ends_with(|c: char| c.is_ascii_digit())
     }
 
     pub fn batched(self) -> Kernel {

@@ -44,7 +44,7 @@ pub fn kernels(mechanism: &Mechanism) -> (Model, Vec<Kernel>) {
 
 fn derive(model: &mut Model) -> Vec<Kernel> {
     let mut kernels = floating::kernels(model);
-    let transitions = model.mechanism.transitions();
+    let transitions = model.mechanism.transitions.clone();
     for mode in model.mechanism.modes.clone() {
         let turn = Turn::new(model, mode);
         kernels.extend(mode::kernels(model, mode, &turn));
@@ -79,7 +79,7 @@ pub struct FamilyKernels {
 pub fn family_kernels(family: &Family) -> (Model, FamilyKernels) {
     let mut model = Model::of_family(family);
     let mut gait = derive(&mut model);
-    let transitions = model.mechanism.transitions();
+    let transitions = model.mechanism.transitions.clone();
     let mut weighted = Vec::new();
     for mode in model.mechanism.modes.clone() {
         weighted.extend(sensitivity::of_mode(&mut model, mode));

@@ -72,12 +72,10 @@ pub fn swinging(model: &mut Model, mode: Mode) -> Vec<Vec3> {
 
 pub fn kernels(model: &mut Model, mode: Mode, turn: &Turn) -> Vec<Kernel> {
     let reduced = Reduced::new(model, mode, turn);
-    let name = |what: &str| mode.kernel(what);
     let (q, qd) = (model.q(0), model.q(1));
     let [position, velocity, acceleration] = platform_motion(model, mode);
     let mut kernels = vec![
-        Kernel::new(
-            name("platform_velocity"),
+        Kernel::of_mode(mode, "platform_velocity",
             mode.say(
                 "ṗ with the stance foot at rest (eq. 3), m/s.",
                 "Velocity of the platform's mass centre from the robot's, m/s.",
@@ -87,8 +85,7 @@ pub fn kernels(model: &mut Model, mode: Mode, turn: &Turn) -> Vec<Kernel> {
         .input("qd", qd.clone())
         .vector("pd", velocity, "ṗ"),
         momentum_terms(model, &reduced, mode),
-        Kernel::new(
-            name("reduced"),
+        Kernel::of_mode(mode, "reduced",
             "Reduced model of eq. 6: the rows of Aq q̈ + Hq are the torques of the joints and, where the platform turns, 0.",
         )
         .input("q", q.clone())
@@ -106,8 +103,9 @@ pub fn kernels(model: &mut Model, mode: Mode, turn: &Turn) -> Vec<Kernel> {
     let rates: Vec<Vec3> = swing.iter().map(|foot| model.rate(foot)).collect();
     let velocity: Vec<Poly> = rates.iter().flat_map(|rate| model.components(rate)).collect();
     kernels.push(
-        Kernel::new(
-            name("placement"),
+        Kernel::of_mode(
+            mode,
+            "placement",
             mode.say(
                 "Platform's mass centre and swing foot from the stance foot, m, with Jacobians in q.",
                 "Platform's mass centre and both feet from the robot's mass centre, m, with Jacobians in q.",
@@ -121,8 +119,9 @@ pub fn kernels(model: &mut Model, mode: Mode, turn: &Turn) -> Vec<Kernel> {
     );
     let by: Vec<Var> = q.iter().chain(&qd).copied().collect();
     kernels.push(
-        Kernel::new(
-            name("swing_velocity"),
+        Kernel::of_mode(
+            mode,
+            "swing_velocity",
             mode.say(
                 "Velocity of the swing foot, m/s, with its Jacobian in (q, q̇).",
                 "Velocities of both feet from the robot's mass centre, m/s, with their Jacobian in (q, q̇).",
@@ -139,7 +138,7 @@ pub fn kernels(model: &mut Model, mode: Mode, turn: &Turn) -> Vec<Kernel> {
 fn momentum_terms(model: &mut Model, reduced: &Reduced, mode: Mode) -> Kernel {
     let turn = reduced.turn;
     let kernel = |doc: &str| {
-        Kernel::new(mode.kernel("momentum_terms"), doc)
+        Kernel::of_mode(mode, "momentum_terms", doc)
             .input("q", model.q(0))
             .input("qd", model.q(1))
             .scalar("f1", turn.f1.clone(), "f1(q), kg·m²")
@@ -161,8 +160,9 @@ fn momentum(model: &mut Model, reduced: &Reduced, mode: Mode) -> Kernel {
     let (q, qd) = (model.q(0), model.q(1));
     let by: Vec<Var> = q.iter().chain(&qd).copied().collect();
     let gradient = model.jacobian(std::slice::from_ref(&reduced.turn.sigma), &by).remove(0);
-    Kernel::new(
-        mode.kernel("momentum"),
+    Kernel::of_mode(
+        mode,
+        "momentum",
         mode.say(
             "σ about the stance foot (eq. 8) and its gradient in (q, q̇).",
             "σ about the mass centre and its gradient in (q, q̇).",
@@ -198,8 +198,9 @@ fn forward(model: &mut Model, reduced: &Reduced, mode: Mode, platform: &[Poly]) 
     let mut xdd: Vec<Poly> = platform.iter().map(|a| model.ring.substitute(a, &map)).collect();
     xdd.extend(solution);
     let reaction = reduced.reaction.iter().map(|f| model.ring.substitute(f, &map)).collect();
-    Kernel::new(
-        mode.kernel("forward"),
+    Kernel::of_mode(
+        mode,
+        "forward",
         mode.say(
             "Forward dynamics in single support: Ẍ and the reaction F from the independent torques Γ \
              (eq. 5 with eq. 4).",
@@ -269,8 +270,9 @@ fn inverse(model: &mut Model, reduced: &Reduced, mode: Mode, platform: &[Poly]) 
     let joints = model.mechanism.joints.len();
     let torques = reduced.forces[..joints].iter().map(|f| insert(model, f, &beta)).collect();
     let reaction = reduced.reaction.iter().map(|f| insert(model, f, &beta)).collect();
-    Kernel::new(
-        mode.kernel("inverse"),
+    Kernel::of_mode(
+        mode,
+        "inverse",
         mode.say(
             "Inverse dynamics in single support: full Ẍ (β̈ by eq. 10), the torque of every joint and the \
              reaction, from Q̈.",
@@ -307,8 +309,7 @@ fn inverse_with_jacobian(model: &mut Model, reduced: &Reduced, mode: Mode) -> Ke
     let balance_rows = jacobian.split_off(outputs.len() - 1);
     let reaction_rows = jacobian.split_off(joints);
     let stands = !reaction.is_empty();
-    let kernel = Kernel::new(
-        mode.kernel("inverse_jacobian"),
+    let kernel = Kernel::of_mode(mode, "inverse_jacobian",
         mode.say(
             "Inverse dynamics in single support with its Jacobian in w = (q, q̇, q̈), β̈ taken as an input of its own, and \
              that of the balance of eq. 10.",

@@ -51,8 +51,9 @@ impl Weighted {
 
 fn instant(model: &mut Model, mode: Mode, turn: &Turn) -> Weighted {
     let instant = Instant::new(model, mode, turn);
-    let kernel = Kernel::new(
-        mode.kernel("sensitivity"),
+    let kernel = Kernel::of_mode(
+        mode,
+        "sensitivity",
         "Gradient in the lumped parameters of the sum of all outputs of an instant, with the weights of the curvature's kernel.",
     );
     Weighted { kernel: instant.inputs(model, kernel), sum: instant.sum, held: BTreeMap::new() }
@@ -70,8 +71,9 @@ fn terms(model: &mut Model, mode: Mode, turn: &Turn) -> Weighted {
             weight
         })
         .collect();
-    let kernel = Kernel::new(
-        mode.kernel("terms_sensitivity"),
+    let kernel = Kernel::of_mode(
+        mode,
+        "terms_sensitivity",
         "Gradient in the lumped parameters of the weighted sum of f1, f2 (eq. 8) and the lever arm c (eq. 9).",
     )
     .input("q", model.q(0))

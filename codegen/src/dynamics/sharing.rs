@@ -9,6 +9,7 @@ use super::curvature::second_derivatives;
 use super::kernel::{Block, Kernel, Shape};
 use super::model::{Model, Origin, scaled};
 use crate::expr::{Poly, Var, Vec3, add, cross, dot, rotate, zero};
+use crate::mechanism::Mode;
 use std::collections::BTreeMap;
 
 /// Kernels for stance on `leg` of a gait whose platform rolls.
@@ -28,8 +29,10 @@ pub fn kernels(model: &mut Model, leg: usize) -> Vec<Kernel> {
     let lever_rows = jacobian.split_off(moment.len());
     let blocks =
         vec![Block::vector("moment", moment.len()), Block { name: "levers", shape: Shape::Matrix(levers.len(), 3) }];
-    let values = state(Kernel::new(
-        format!("sharing{}", leg + 1),
+    let mode = Mode::Stance(leg);
+    let values = state(Kernel::of_mode(
+        mode,
+        "sharing",
         "What decides how the real legs of the stance leg share the load, with its Jacobian in w = (q, q̇, q̈): the moment that \
          their forces must have about the virtual foot, and the foot's place as the leg's joints move it.",
     ))
@@ -37,8 +40,9 @@ pub fn kernels(model: &mut Model, leg: usize) -> Vec<Kernel> {
     .matrix("levers", levers, "∂(foot from the platform)/∂(joint), a row per joint of the leg, m")
     .matrix("moment_w", jacobian, "∂moment/∂w")
     .matrix("levers_w", lever_rows, "∂levers/∂w, a row for each of them");
-    let curvature = state(Kernel::new(
-        format!("sharing_curvature{}", leg + 1),
+    let curvature = state(Kernel::of_mode(
+        mode,
+        "sharing_curvature",
         "Gradient in (q, q̇, q̈) and second derivatives of the sum of what the sharing's kernel gives, each with its weight.",
     ))
     .blocks("weights", weights, blocks);

@@ -69,21 +69,21 @@ pub fn kernels(model: &mut Model, mode: Mode, turn: &Turn) -> Vec<Kernel> {
     let f2_q = gradient(&turn.f2, &prescribed);
     let f2_qd = gradient(&turn.f2, &rates);
     let moment_q = gradient(&turn.gravity_moment, &prescribed);
-    let name = |what: &str| mode.kernel(what);
     vec![
-        Kernel::new(
-            name("early"),
+        Kernel::of_mode(
+            mode,
+            "early",
             "What eq. 8 and 9 and their gradients need of (Q, Q̇) alone; the late kernels take it.",
         )
         .input("actuated", prescribed)
         .input("actuated_d", rates)
         .vector("early", early.values.clone(), "early values"),
-        Kernel::new(name("late"), "f1, f2 (eq. 8) and σ̇ (eq. 9) with their derivatives in β.")
+        Kernel::of_mode(mode, "late", "f1, f2 (eq. 8) and σ̇ (eq. 9) with their derivatives in β.")
             .input("early", early.symbols.clone())
             .scalar_input("beta", beta)
             .vector("value", late, "f1, f2, σ̇")
             .vector("by_beta", by_beta, "∂(f1, f2, σ̇)/∂β"),
-        Kernel::new(name("late_gradient"), "Gradients of f1, f2 (eq. 8) and σ̇ (eq. 9) in Q and Q̇.")
+        Kernel::of_mode(mode, "late_gradient", "Gradients of f1, f2 (eq. 8) and σ̇ (eq. 9) in Q and Q̇.")
             .input("early", early.symbols)
             .scalar_input("beta", beta)
             .vector("f1_q", f1_q, "∂f1/∂Q")

@@ -133,8 +133,8 @@ pub fn impact(model: &mut Model, leg: usize) -> Kernel {
 /// The impact on one foot at the end of a mode, with the velocities after as symbols, so that what depends on them can be
 /// differentiated by parts.
 struct Impact {
-    /// Velocities before that are given: q̇⁻ after single support, which knows ṗ⁻ from it, else Ẋ⁻.
-    velocities: Velocities,
+    /// Velocities before that are given.
+    given: Given,
     /// Aq about the landing foot.
     inertia: Vec<Vec<Poly>>,
     /// Momenta before.
@@ -150,22 +150,46 @@ struct Impact {
     blocks: Vec<Block>,
 }
 
-/// Rates under the name of their input.
-struct Velocities {
-    name: &'static str,
-    symbols: Vec<Var>,
+/// Velocities before an impact: q̇⁻ after single support, which knows all others by it; after a flight that of the mass centre
+/// besides.
+struct Given {
+    centre: Vec<Var>,
+    rates: Vec<Var>,
+}
+
+impl Given {
+    fn new(model: &mut Model, transition: Transition) -> Given {
+        let components = if transition.leaves().is_some() { 0 } else { model.mechanism.positions() };
+        Given { centre: symbols(model, "v", components), rates: model.q(1) }
+    }
+
+    fn symbols(&self) -> Vec<Var> {
+        [&self.centre[..], &self.rates].concat()
+    }
+
+    /// As inputs of a kernel.
+    fn inputs(self) -> Vec<Input> {
+        let centre = (!self.centre.is_empty()).then(|| Input::new("v", self.centre));
+        centre.into_iter().chain([Input::new("qd", self.rates)]).collect()
+    }
+
+    /// Velocity of the platform.
+    fn platform(&self, model: &mut Model, transition: Transition) -> Vec3 {
+        let origin = transition.leaves().map_or(Origin::MassCentre, Origin::Foot);
+        let p = model.place(origin).map(|x| -&x);
+        let mut velocity = model.rate(&p);
+        for (component, centre) in velocity.iter_mut().zip(&self.centre) {
+            *component += &(*centre).into();
+        }
+        velocity
+    }
 }
 
 impl Impact {
     fn new(model: &mut Model, transition: Transition, leg: usize) -> Impact {
         let qd = model.q(1);
-        let (velocities, platform) = match transition.leaves() {
-            Some(stance) => {
-                let p = model.foot(stance).map(|x| -&x);
-                (Velocities { name: "qd", symbols: qd.clone() }, model.rate(&p))
-            }
-            None => (Velocities { name: "xd", symbols: model.x(1) }, platform_rate(model)),
-        };
+        let given = Given::new(model, transition);
+        let platform = given.platform(model, transition);
         let before = momenta_before(model, leg, &platform);
         let inertia = inertia_about(model, leg);
         let plus = symbols(model, "plus", qd.len());
@@ -194,15 +218,15 @@ impl Impact {
             outputs.extend(sharing::landing(model, leg, &platform, &rename));
             blocks.extend([Block::vector("couple", 2), Block::scalar("pitch")]);
         }
-        Impact { velocities, inertia, before, plus, residual, outputs, blocks }
+        Impact { given, inertia, before, plus, residual, outputs, blocks }
     }
 }
 
 /// The impact at the end of a mode, with its Jacobian in q and the velocities before.
 fn landing(model: &mut Model, transition: Transition, leg: usize) -> Kernel {
     let q = model.q(0);
-    let Impact { velocities, inertia, before, plus, residual, outputs, .. } = Impact::new(model, transition, leg);
-    let by: Vec<Var> = q.iter().chain(&velocities.symbols).copied().collect();
+    let Impact { given, inertia, before, plus, residual, outputs, .. } = Impact::new(model, transition, leg);
+    let by: Vec<Var> = q.iter().copied().chain(given.symbols()).collect();
     let factors = Factors::new(&mut model.ring, &inertia);
     let solution = factors.solve(&mut model.ring, &before);
     let insert: BTreeMap<Var, Poly> = plus.iter().copied().zip(solution.iter().cloned()).collect();
@@ -241,12 +265,12 @@ fn landing(model: &mut Model, transition: Transition, leg: usize) -> Kernel {
     let doc = if leaves {
         "Impact on this foot at the end of single support on the other (eq. 12), with its Jacobian in w = (q, q̇⁻)."
     } else {
-        "Impact on this foot at the end of a flight (eq. 12), with its Jacobian in w = (q, ṗ⁻, q̇⁻)."
+        "Impact on this foot at the end of a flight (eq. 12), with its Jacobian in w = (q, v⁻, q̇⁻), v the mass centre's velocity."
     };
     let components = values.len();
     let mut kernel = Kernel::new(transition.kernel(""), doc)
         .input("q", q.clone())
-        .input(velocities.name, velocities.symbols)
+        .inputs(given.inputs())
         .vector("qd_plus", solution, "q̇⁺, before the legs swap names")
         .vector("impulse", values, "impulse on the landing foot, N·s");
     if let Some(leaving) = leaving_velocity {
@@ -275,7 +299,7 @@ fn landing(model: &mut Model, transition: Transition, leg: usize) -> Kernel {
 
 /// An impact's results, each with its weight, and the adjoint of its linear system.
 struct WeightedImpact {
-    velocities: Velocities,
+    given: Given,
     /// Weights of q̇⁺.
     xi: Vec<Var>,
     /// Weights of the other results.
@@ -320,25 +344,17 @@ impl WeightedImpact {
         for (z, residual) in adjoint.iter().zip(&impact.residual) {
             sum += &(&Poly::from(*z) * residual);
         }
-        WeightedImpact {
-            velocities: impact.velocities,
-            xi,
-            outputs,
-            blocks: impact.blocks,
-            plus: impact.plus,
-            sum,
-            solution,
-        }
+        WeightedImpact { given: impact.given, xi, outputs, blocks: impact.blocks, plus: impact.plus, sum, solution }
     }
 }
 
 /// Second derivatives of an impact's weighted results.
 fn landing_curvature(model: &mut Model, transition: Transition, leg: usize) -> Kernel {
     let q = model.q(0);
-    let WeightedImpact { velocities, xi, outputs, blocks, plus, sum, solution } =
+    let WeightedImpact { given, xi, outputs, blocks, plus, sum, solution } =
         WeightedImpact::new(model, transition, leg);
     let by_q: Vec<Poly> = q.iter().map(|s| model.ring.derivative(&sum, *s)).collect();
-    let raw = [model.hessian(&by_q, &q), model.jacobian(&by_q, &velocities.symbols), model.jacobian(&by_q, &plus)];
+    let raw = [model.hessian(&by_q, &q), model.jacobian(&by_q, &given.symbols()), model.jacobian(&by_q, &plus)];
     let mut insert = |rows: &Vec<Vec<Poly>>| -> Vec<Vec<Poly>> {
         rows.iter().map(|row| row.iter().map(|p| model.ring.substitute(p, &solution)).collect()).collect()
     };
@@ -353,14 +369,14 @@ fn landing_curvature(model: &mut Model, transition: Transition, leg: usize) -> K
         ),
         None => (
             "Second derivatives of a landing's results, weighted: q̇⁺ (xi), then impulse and landing velocity (outputs). With \
-             J = ∂q̇⁺/∂(q, Ẋ⁻), the Hessian in (q, Ẋ⁻) is [q_q, q_xd; ·, 0] + [q_plus; 0] J + its transpose.",
-            "q_xd",
-            "∂²/∂q∂Ẋ⁻",
+             J = ∂q̇⁺/∂(q, v⁻, q̇⁻), the Hessian in (q, v⁻, q̇⁻) is [q_q, q_v; ·, 0] + [q_plus; 0] J + its transpose.",
+            "q_v",
+            "∂²/∂q∂(v⁻, q̇⁻)",
         ),
     };
     Kernel::new(transition.kernel("_curvature"), doc)
         .input("q", q)
-        .input(velocities.name, velocities.symbols)
+        .inputs(given.inputs())
         .input("xi", xi)
         .blocks("outputs", outputs, blocks)
         .matrix("q_q", qq, "∂²/∂q∂q")
@@ -441,9 +457,10 @@ impl Results {
             }
             Some(leg) => {
                 let impact = WeightedImpact::new(model, transition, leg);
-                let velocities = Input::new(impact.velocities.name, impact.velocities.symbols);
                 let outputs = Input::of_blocks("outputs", impact.outputs, impact.blocks);
-                let inputs = vec![q, velocities, Input::new("xi", impact.xi), outputs];
+                let mut inputs = vec![q];
+                inputs.extend(impact.given.inputs());
+                inputs.extend([Input::new("xi", impact.xi), outputs]);
                 Results { inputs, sum: impact.sum, solution: impact.solution }
             }
         }

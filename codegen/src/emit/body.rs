@@ -97,7 +97,8 @@ impl<'a> Body<'a> {
     fn input(&self, i: usize, input: &Input, used: &[bool]) -> Written<TokenStream> {
         let array = ident(input.name)?;
         if input.scalar {
-            let name = input_name(self.function, i, 0)?;
+            // What nothing depends on is read all the same, so that its parameter is not called unused.
+            let name = if used[0] { input_name(self.function, i, 0)? } else { format_ident!("_") };
             return Ok(match self.form {
                 Form::Lane => quote!(let #name = #array[lane];),
                 Form::Single if name != array => quote!(let #name = #array;),

@@ -3,8 +3,8 @@
 use super::function::Function;
 use super::shapes::shapes;
 use super::tokens::{Written, float, floats, option, whole};
-use crate::mechanism::{Actuated, Body, Mechanism, Member, Point, Spot, VirtualLeg, points};
-use crate::spec::{HalfSteps, Limits, Rotation};
+use crate::mechanism::{Actuated, Body, Mechanism, Member, Mode, Phase, Point, Spot, VirtualLeg, points};
+use crate::spec::{Limits, Rotation, Then};
 use proc_macro2::TokenStream;
 use quote::quote;
 use syn::Path;
@@ -22,14 +22,11 @@ pub fn description(
         Rotation::Pitch => quote!(Pitch),
         Rotation::Roll => quote!(Roll),
     };
-    let half_steps = match m.half_steps {
-        HalfSteps::Mirrored => quote!(Mirrored),
-        HalfSteps::Distinct => quote!(Distinct),
+    let phases = each(&m.phases, |p| phase(p, runtime))?;
+    let then = match m.then {
+        Then::Mirrored => quote!(Mirrored),
+        Then::Repeat => quote!(Repeat),
     };
-    let early = [0, 1].map(|leg| {
-        let name = format!("early{}", leg + 1);
-        whole(functions.iter().find(|f| f.kernel.name == name).map_or(0, |f| f.kernel.outputs[0].values.len()))
-    });
     let (gait, robot, lateral, gravity) = (&m.gait, &m.robot, m.lateral, float(m.gravity)?);
     let (bodies, joints) = (each(&m.bodies, |b| body(b, runtime))?, each(&m.joints, |j| joint(j, runtime))?);
     let (legs, limits) = (each(&m.legs, |l| leg(l, runtime))?, limits(&m.limits, runtime)?);
@@ -47,14 +44,14 @@ pub fn description(
             gravity: #gravity,
             lateral: #lateral,
             rotation: #runtime::Rotation::#rotation,
-            half_steps: #runtime::HalfSteps::#half_steps,
+            phases: std::borrow::Cow::Borrowed(&[#(#phases),*]),
+            then: #runtime::Then::#then,
             bodies: std::borrow::Cow::Borrowed(&[#(#bodies),*]),
             corners: std::borrow::Cow::Borrowed(&[#(#corners),*]),
             joints: std::borrow::Cow::Borrowed(&[#(#joints),*]),
             legs: [#(#legs),*],
             unactuated: #unactuated,
             polynomial_order: #order,
-            early: [#(#early),*],
             points: &[#(#points),*],
             lowest: &[#(#lowest),*],
             limits: #limits,
@@ -62,6 +59,18 @@ pub fn description(
             operations: &[#(#operations),*],
         }
     })
+}
+
+fn phase(p: &Phase, runtime: &Path) -> Written<TokenStream> {
+    let mode = match p.mode {
+        Mode::Stance(leg) => {
+            let leg = whole(leg);
+            quote!(Stance(#leg))
+        }
+        Mode::Flight => quote!(Flight),
+    };
+    let duration = floats(p.duration)?;
+    Ok(quote!(#runtime::Phase { mode: #runtime::Mode::#mode, duration: #duration }))
 }
 
 /// What each of some things is in the code.
@@ -146,14 +155,12 @@ fn point(p: &Point, runtime: &Path) -> TokenStream {
 
 fn limits(l: &Limits, runtime: &Path) -> Written<TokenStream> {
     let (friction, force, clearance) = (float(l.friction)?, float(l.min_vertical_force)?, float(l.swing_clearance)?);
-    let (duration, height) = (floats(l.half_step_duration)?, float(l.min_platform_height)?);
-    let body_clearance = float(l.body_clearance)?;
+    let (height, body_clearance) = (float(l.min_platform_height)?, float(l.body_clearance)?);
     Ok(quote! {
         #runtime::Limits {
             friction: #friction,
             min_vertical_force: #force,
             swing_clearance: #clearance,
-            half_step_duration: #duration,
             min_platform_height: #height,
             body_clearance: #body_clearance,
             real_legs: false,

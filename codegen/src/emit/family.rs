@@ -50,7 +50,7 @@ fn implementation<'f>(
     let name = ident(&type_name(&m.gait))?;
     let text = doc(&format!("The {} of a member of the family of `{}`.", m.gait, m.robot));
     let (lumps, parameters) = (whole(lumps), whole(family.parameters.len()));
-    let (of_state, of_lumps) = (methods(gait)?, methods(of_lumps)?);
+    let (of_state, of_lumps) = (methods(gait, runtime)?, methods(of_lumps, runtime)?);
     Ok(quote! {
         #text
         #[derive(Clone, Debug)]

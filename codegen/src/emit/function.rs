@@ -32,12 +32,6 @@ pub fn functions<'a>(ring: &'a Ring, kernels: &'a [Kernel]) -> Written<Vec<Funct
     in_turn(kernels, |kernel| Reverse(kernel.pairs()), Search::default, make).into_iter().collect()
 }
 
-/// `inverse_jacobian2` → (`inverse_jacobian`, true): leg kernels end in the leg's number.
-pub fn base_name(name: &str) -> (&str, bool) {
-    let base = name.trim_end_matches(|c: char| c.is_ascii_digit());
-    (base, base.len() != name.len())
-}
-
 impl Function<'_> {
     pub fn new<'a>(ring: &'a Ring, kernel: &'a Kernel, search: &mut Search) -> Written<Function<'a>> {
         let derived = Program::as_derived(ring, kernel);
@@ -57,7 +51,7 @@ impl Function<'_> {
     }
 
     pub fn struct_name(&self) -> Written<Ident> {
-        ident(&type_name(base_name(&self.kernel.name).0))
+        ident(&type_name(self.kernel.name.trim_end_matches(|c: char| c.is_ascii_digit())))
     }
 
     /// The struct returned, if the kernel has several outputs: its name and its definition.

@@ -1,11 +1,11 @@
 //! One generated module per gait.
 
 use super::description::{description, each};
-use super::function::{Function, base_name, functions};
+use super::function::{Function, functions};
 use super::modules::key;
 use super::tokens::{Written, doc, float, ident, path, print, whole};
 use crate::dynamics::{Input, Kernel, LUMPS, PARAMETERS, Shape, kernels, lowest};
-use crate::mechanism::{Lever, Mechanism};
+use crate::mechanism::{Lever, Mechanism, Mode};
 use crate::spec::name::type_name;
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -89,7 +89,7 @@ fn implementation(
     let (name, whole) = (ident(&type_name(&m.gait))?, ident(whole)?);
     let text = doc(&format!("The {} of `{}`.", m.gait, m.robot));
     let levers = each(levers, |l| lever(l, runtime))?;
-    let methods = methods(functions)?;
+    let methods = methods(functions, runtime)?;
     Ok(quote! {
         #text
         #[derive(Clone, Copy, Debug, Default)]
@@ -150,42 +150,69 @@ fn lever(lever: &Lever, runtime: &Path) -> Written<TokenStream> {
 }
 
 /// Trait methods: per kernel one that takes slices and writes all outputs one after another.
-pub(super) fn methods<'f>(functions: impl IntoIterator<Item = &'f Function<'f>>) -> Written<TokenStream> {
+pub(super) fn methods<'f>(
+    functions: impl IntoIterator<Item = &'f Function<'f>>,
+    runtime: &Path,
+) -> Written<TokenStream> {
     let mut by_base: BTreeMap<&str, Vec<&Kernel>> = BTreeMap::new();
     let mut order = Vec::new();
     for function in functions {
-        let (base, _) = base_name(&function.kernel.name);
+        let base = function.kernel.base();
         let list = by_base.entry(base).or_default();
         if list.is_empty() {
             order.push(base);
         }
         list.push(function.kernel);
     }
-    order.into_iter().map(|base| method(base, &by_base[base])).collect()
+    order.into_iter().map(|base| method(base, &by_base[base], runtime)).collect()
 }
 
-/// The method of a kernel or, where there is one for either leg, of these twins.
-fn method(base: &str, twins: &[&Kernel]) -> Written<TokenStream> {
+/// The method of a kernel or, where there are some for both legs or for several modes, of these twins.
+fn method(base: &str, twins: &[&Kernel], runtime: &Path) -> Written<TokenStream> {
     let name = ident(base)?;
-    let leg = base_name(&twins[0].name).1.then(|| quote!(leg: usize,));
+    let of = match (twins[0].mode, twins[0].is_of_leg()) {
+        (Some(_), _) => quote!(mode: #runtime::Mode,),
+        (None, true) => quote!(leg: usize,),
+        (None, false) => TokenStream::new(),
+    };
+    // The first twin is one of stance, whose kernels take all that those of flight do.
     let inputs = twins[0].inputs.iter().filter(|i| !is_of_robot(i)).map(|i| {
         let (name, ty) = (ident(i.name)?, if i.scalar { quote!(f64) } else { quote!(&[f64]) });
         Ok(quote!(#name: #ty,))
     });
     let inputs = inputs.collect::<Written<TokenStream>>()?;
     let body = match twins {
-        [first, second, ..] => {
-            let (first, second) = (call(first)?, call(second)?);
-            quote!(if leg == 0 { #first } else { #second })
+        [one] if of.is_empty() => call(one)?,
+        _ => {
+            let arms = each(twins, |kernel| {
+                let (when, call) = (arm(kernel, runtime), call(kernel)?);
+                Ok(quote!(#when => { #call }))
+            })?;
+            let which = if twins[0].mode.is_some() { quote!(mode) } else { quote!(leg) };
+            quote!(match #which { #(#arms)* _ => out.fill(f64::NAN) })
         }
-        _ => call(twins[0])?,
     };
     Ok(quote! {
         #[inline]
-        fn #name(&self, #leg #inputs out: &mut [f64]) {
+        fn #name(&self, #of #inputs out: &mut [f64]) {
             #body
         }
     })
+}
+
+/// Of what leg or mode a kernel is, as a pattern.
+fn arm(kernel: &Kernel, runtime: &Path) -> TokenStream {
+    match kernel.mode {
+        Some(Mode::Flight) => quote!(#runtime::Mode::Flight),
+        Some(Mode::Stance(leg)) => {
+            let leg = whole(leg);
+            quote!(#runtime::Mode::Stance(#leg))
+        }
+        None => {
+            let leg = whole(usize::from(!kernel.name.ends_with('1')));
+            quote!(#leg)
+        }
+    }
 }
 
 /// Whether an input is a property of the robot rather than of its state.

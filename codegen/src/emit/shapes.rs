@@ -1,27 +1,55 @@
 //! Where everything stands among a kernel's numbers, as values of the runtime's types. Fields are called as the kernel calls its
 //! blocks: a name that the runtime does not know does not compile.
 
-use super::function::{Function, base_name};
+use super::function::Function;
 use super::tokens::{Written, ident, whole};
 use crate::dynamics::{Block, Kernel};
+use crate::mechanism::Mode;
 use crate::spec::name::type_name;
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use syn::Path;
 
-/// The shapes of all kernels that have several outputs or weights of several kinds. Twins for both legs have the same.
+/// The shapes of all kernels but those that give one thing: of each mode, then the others. Twins for both legs have the same,
+/// but for the length of what is known early, which is that of the longer.
 pub fn shapes(functions: &[Function], all: &TokenStream, runtime: &Path) -> Written<TokenStream> {
-    let mut known = BTreeSet::new();
-    let several = |k: &&Kernel| k.outputs.len() > 1 || k.inputs.iter().any(|input| !input.blocks.is_empty());
-    let kernels = functions.iter().map(|f| f.kernel).filter(several);
-    let fields = kernels.filter(|k| known.insert(base_name(&k.name).0)).map(|k| {
-        let base = base_name(&k.name).0;
-        let (field, shape) = (ident(base)?, kernel(base, k, runtime)?);
-        Ok(quote!(#field: #shape))
+    type Belongs = fn(Option<Mode>) -> bool;
+    let kernels = |belongs: Belongs| functions.iter().map(|f| f.kernel).filter(move |k| belongs(k.mode));
+    let modes: [(&str, Belongs); 2] =
+        [("stance", |m| matches!(m, Some(Mode::Stance(_)))), ("flight", |m| m == Some(Mode::Flight))];
+    let of_mode = modes.into_iter().filter(|(_, belongs)| kernels(*belongs).next().is_some()).map(|(name, belongs)| {
+        let (name, ty) = (ident(name)?, quote!(#runtime::shape::ModeShapes));
+        let fields = fields(kernels(belongs), runtime)?;
+        Ok(quote!(#name: #ty { #fields ..#ty::NONE },))
     });
-    let fields = fields.collect::<Written<Vec<_>>>()?;
-    Ok(quote!(#all { #(#fields,)* ..#all::NONE }))
+    let of_mode = of_mode.collect::<Written<TokenStream>>()?;
+    let others = fields(kernels(|mode| mode.is_none()), runtime)?;
+    Ok(quote!(#all { #of_mode #others ..#all::NONE }))
+}
+
+/// Of one thing, but its length is of interest.
+const EARLY: &str = "early";
+
+fn fields<'k>(kernels: impl Iterator<Item = &'k Kernel>, runtime: &Path) -> Written<TokenStream> {
+    let mut by_base: BTreeMap<&str, &Kernel> = BTreeMap::new();
+    let mut order = Vec::new();
+    let length = |k: &Kernel| k.outputs.iter().map(|output| output.values.len()).sum::<usize>();
+    let several = |k: &&Kernel| k.outputs.len() > 1 || k.inputs.iter().any(|input| !input.blocks.is_empty());
+    for kernel in kernels.filter(|k| several(k) || k.base() == EARLY) {
+        let known = by_base.entry(kernel.base()).or_insert_with(|| {
+            order.push(kernel.base());
+            kernel
+        });
+        if length(kernel) > length(known) {
+            *known = kernel;
+        }
+    }
+    let field = |base: &&str| {
+        let (field, shape) = (ident(base)?, kernel(base, by_base[base], runtime)?);
+        Ok(quote!(#field: #shape,))
+    };
+    order.iter().map(field).collect()
 }
 
 fn kernel(base: &str, kernel: &Kernel, runtime: &Path) -> Written<TokenStream> {

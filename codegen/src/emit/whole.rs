@@ -45,7 +45,7 @@ fn implementation(whole: &Whole, functions: &[Function], runtime: &Path) -> Writ
     let joints = each(&whole.joints, |j| joint(j, runtime))?;
     let legs = each(&whole.legs, |l| leg(l, runtime))?;
     let shapes = shapes(functions, &quote!(#runtime::whole::Shapes), runtime)?;
-    let methods = methods(functions)?;
+    let methods = methods(functions, runtime)?;
     Ok(quote! {
         #text
         #[derive(Clone, Copy, Debug, Default)]

@@ -11,7 +11,7 @@
 
 use super::parameter::{Place, Sign};
 use super::{Actuated, Mechanism, parameter};
-use crate::spec::{Axis, Gait, HalfSteps, Leg, Limits, Robot, Rotation};
+use crate::spec::{Axis, Gait, Leg, Robot, Rotation, Then};
 use std::fmt::Arguments;
 
 /// Numbers of the specification that change together.
@@ -60,7 +60,7 @@ impl Lever {
     pub fn moved(&self, robot: &Robot, gait: &Gait, by: f64) -> (Robot, Gait) {
         let sides = Sides::new(robot);
         let (mut robot, mut gait) = (robot.clone(), gait.clone());
-        places(&mut robot, &mut gait.limits, |place| {
+        places(&mut robot, &mut gait, |place| {
             let own = place.own.to_string();
             if self.numbers.contains(&own) {
                 let value = place.value();
@@ -107,7 +107,7 @@ impl Lever {
 /// All numbers of a specification.
 fn numbers(robot: &Robot, gait: &Gait) -> Vec<Number> {
     let mut named: Vec<(String, Number)> = Vec::new();
-    places(&mut robot.clone(), &mut gait.limits.clone(), |place| {
+    places(&mut robot.clone(), &mut gait.clone(), |place| {
         let (name, own) = (place.name.to_string(), place.own.to_string());
         match named.iter_mut().find(|known| known.0 == name) {
             None => named.push((name, Number { names: vec![own], unit: place.unit, value: place.value() })),
@@ -135,7 +135,7 @@ fn tied<'n>(numbers: &'n [Number], robot: &Robot, gait: &Gait) -> Vec<Vec<&'n Nu
             }
         }
     };
-    let mirrored = gait.half_steps == HalfSteps::Mirrored;
+    let mirrored = gait.phases.then == Then::Mirrored;
     let sets = if mirrored { vec![gait.virtual_legs.concat()] } else { gait.virtual_legs.to_vec() };
     let mut crossed = Vec::new();
     for set in &sets {
@@ -228,15 +228,15 @@ impl Mechanism {
     pub fn limiting_numbers(&self) -> Vec<f64> {
         let of_joint = |j: &Actuated| [j.range[0], j.range[1], j.max_torque, j.unloaded_speed, j.loaded_speed];
         let l = &self.limits;
-        let [shortest, longest] = l.half_step_duration;
-        let of_gait = [l.friction, l.min_vertical_force, l.swing_clearance, shortest, longest];
+        let of_gait = [l.friction, l.min_vertical_force, l.swing_clearance];
+        let durations = self.phases.iter().flat_map(|phase| phase.duration);
         let heights = [l.min_platform_height, l.body_clearance];
-        self.joints.iter().flat_map(of_joint).chain(of_gait).chain(heights).collect()
+        self.joints.iter().flat_map(of_joint).chain(of_gait).chain(durations).chain(heights).collect()
     }
 }
 
 /// Visits all numbers of a specification: those of the robot, then what only limits.
-fn places(robot: &mut Robot, limits: &mut Limits, mut visit: impl FnMut(Place)) {
+fn places(robot: &mut Robot, gait: &mut Gait, mut visit: impl FnMut(Place)) {
     parameter::places(robot, &mut visit);
     let mut add = |name: Arguments, unit, number: &mut f64| {
         visit(Place { name, own: name, unit, sign: Sign::Any, negative: false, number });
@@ -253,12 +253,19 @@ fn places(robot: &mut Robot, limits: &mut Limits, mut visit: impl FnMut(Place)) 
         add(format_args!("actuators.{name}.max_speed.unloaded"), "rev/min", &mut motor.unloaded_speed);
         add(format_args!("actuators.{name}.max_speed.at_max_torque"), "rev/min", &mut motor.loaded_speed);
     }
-    let [shortest, longest] = &mut limits.half_step_duration;
+    let limits = &mut gait.limits;
     add(format_args!("limits.friction"), "", &mut limits.friction);
     add(format_args!("limits.min_vertical_force"), "N", &mut limits.min_vertical_force);
     add(format_args!("limits.swing_clearance"), "m", &mut limits.swing_clearance);
-    add(format_args!("limits.half_step_duration.shortest"), "s", shortest);
-    add(format_args!("limits.half_step_duration.longest"), "s", longest);
+    for (k, phase) in gait.phases.list.iter_mut().enumerate() {
+        for (end, number) in ["shortest", "longest"].into_iter().zip(&mut phase.duration) {
+            if gait.phases.half_steps {
+                add(format_args!("limits.half_step_duration.{end}"), "s", number);
+            } else {
+                add(format_args!("phases.{}.duration.{end}", k + 1), "s", number);
+            }
+        }
+    }
     add(format_args!("limits.min_platform_height"), "m", &mut limits.min_platform_height);
     add(format_args!("limits.body_clearance"), "m", &mut limits.body_clearance);
 }

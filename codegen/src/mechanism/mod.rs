@@ -14,13 +14,13 @@ mod transition;
 pub use embedding::{Member, VirtualLeg};
 pub use family::Family;
 pub use lever::{Lever, levers};
-pub use mode::Mode;
+pub use mode::{Mode, Phase};
 pub use parameter::{Parameter, Sign, parameters, select, with};
 pub use points::{Point, Spot, points};
 pub use robot::{Body, Whole, WholeJoint, WholeLeg};
 pub use transition::Transition;
 
-use crate::spec::{Gait, HalfSteps, Joint, Limits, Robot, Rotation, Unactuated};
+use crate::spec::{Gait, Joint, Limits, Robot, Rotation, Then, Unactuated};
 
 /// A robot as one gait moves it; SI units, body axes x forward, y up, z right.
 #[derive(Clone, Debug)]
@@ -41,9 +41,12 @@ pub struct Mechanism {
     pub legs: [VirtualLeg; 2],
     /// Index of β in q = [joints, θ].
     pub unactuated: usize,
-    /// In which situations it moves.
+    pub phases: Vec<Phase>,
+    pub then: Then,
+    /// In which situations it moves; stance on either leg is always among them.
     pub modes: Vec<Mode>,
-    pub half_steps: HalfSteps,
+    /// How these follow each other.
+    pub transitions: Vec<Transition>,
     pub polynomial_order: usize,
     pub limits: Limits,
 }
@@ -67,6 +70,7 @@ impl Mechanism {
     pub fn new(robot: &Robot, gait: &Gait) -> Mechanism {
         let (mut bodies, mut joints) = (vec![Body::platform(robot)], Vec::new());
         let legs = [0, 1].map(|k| VirtualLeg::new(robot, &gait.virtual_legs[k], k + 1, &mut joints, &mut bodies));
+        let phases: Vec<Phase> = gait.phases.list.iter().map(Phase::new).collect();
         let unactuated = match gait.unactuated {
             Unactuated::Platform => joints.len(),
             Unactuated::Joint { leg, joint } => legs[leg].joints.start + joint,
@@ -82,8 +86,10 @@ impl Mechanism {
             joints,
             legs,
             unactuated,
-            modes: vec![Mode::Stance(0), Mode::Stance(1)],
-            half_steps: gait.half_steps,
+            modes: mode::all(&phases),
+            transitions: transition::all(&phases, gait.phases.then),
+            phases,
+            then: gait.phases.then,
             polynomial_order: gait.polynomial_order,
             limits: gait.limits.clone(),
         }

@@ -5,7 +5,7 @@
 //! points count on both virtual legs, and corners on both sides.
 
 use super::{Mechanism, Member};
-use crate::spec::{HalfSteps, Leg, Platform, Robot, Rotation};
+use crate::spec::{Leg, Platform, Robot, Rotation, Then};
 
 /// A point of a body.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,7 +70,7 @@ pub(super) fn joints(robot: &Robot, leg: usize, names: &[String]) -> Vec<Spot> {
 
 /// All points of a gait.
 pub fn points(m: &Mechanism) -> Vec<Point> {
-    let exchanged = m.half_steps == HalfSteps::Mirrored;
+    let exchanged = m.then == Then::Mirrored;
     let mirror = exchanged && m.rotation == Rotation::Roll;
     let mut points = Vec::new();
     let mut add = |of: Option<(usize, usize)>, spots: &[Spot], leg: usize, image: bool| {

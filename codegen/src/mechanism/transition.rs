@@ -1,6 +1,7 @@
 //! From one mode to the next: which foot lands, and which one leaves.
 
-use super::{Mechanism, Mode};
+use super::{Mode, Phase};
+use crate::spec::Then;
 
 /// A change of what stands on the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,10 +38,17 @@ impl Transition {
     }
 }
 
-impl Mechanism {
-    /// The transitions between its modes: from foot to foot, and into flight and out of it.
-    pub fn transitions(&self) -> Vec<Transition> {
-        let pairs = self.modes.iter().flat_map(|to| self.modes.iter().map(|from| Transition { from: *from, to: *to }));
-        pairs.filter(|t| t.from != t.to).collect()
+/// The transitions of a gait. Legs are called as in the phase before, so that those of the mirror image are the same.
+pub fn all(phases: &[Phase], then: Then) -> Vec<Transition> {
+    let following = phases.iter().skip(1).chain(phases.first());
+    let mut transitions = Vec::new();
+    for (k, (phase, next)) in phases.iter().zip(following).enumerate() {
+        let exchanges = then == Then::Mirrored && k + 1 == phases.len();
+        let to = if exchanges { next.mode.exchanged() } else { next.mode };
+        let transition = Transition { from: phase.mode, to };
+        if !transitions.contains(&transition) {
+            transitions.push(transition);
+        }
     }
+    transitions
 }

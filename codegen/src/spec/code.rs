@@ -77,7 +77,7 @@ codes! {
     LegTwice = "S032",
     /// Legs of one virtual leg that cannot move as one.
     LegsDoNotPair = "S033",
-    /// Half steps that cannot be mirror images of each other.
+    /// Half steps, or halves of a cycle, that cannot be mirror images of each other.
     NotMirrored = "S034",
     /// Directions of motion that do not go with the platform's rotation.
     WrongMoves = "S035",
@@ -87,6 +87,18 @@ codes! {
     OutOfPlane = "S037",
     /// A joint that the gait cannot hold still.
     CannotLock = "S040",
+    /// Keys of both ways to write a gait's phases.
+    TwoWays = "S041",
+    /// A flight of a robot that cannot fly.
+    CannotFly = "S042",
+    /// A phase in which both virtual legs stand.
+    DoubleSupport = "S043",
+    /// Two phases in a row in which the same stands.
+    PhasesAlike = "S044",
+    /// A virtual leg that never stands.
+    NeverStands = "S045",
+    /// A list of phases that does not begin on leg 1.
+    NotOnLeg1First = "S046",
 }
 
 impl fmt::Display for Code {

@@ -70,7 +70,7 @@ impl View<'_> {
             Some(value) => Some(At { value, span: field.span }),
             None => {
                 let title = format!("`{}` cannot be {digits}", field.path);
-                let label = format!("must be {}", field.key.kind.shape());
+                let label = format!("must be {}", field.key.kind.shape(field.way));
                 sink.report(Code::UnknownChoice, title, &field.span, label, field.advice());
                 None
             }
@@ -106,7 +106,7 @@ impl View<'_> {
         }
         let title = format!("`{}` does not rise", field.path);
         let help = match low == high {
-            true => format!("write a lower and a higher value: {}", field.key.template()),
+            true => format!("write a lower and a higher value: {}", field.key.template(field.way)),
             false => format!("write the lower value first: {} = [{high:?}, {low:?}]", field.key.name),
         };
         sink.report(Code::ReversedRange, title, &pair.span, "lowest first, highest second", help);

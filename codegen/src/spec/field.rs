@@ -5,7 +5,7 @@ use toml::de::DeValue;
 use super::Code;
 use super::decode::Names;
 use super::diagnostic::{At, Sink, Span};
-use super::keys::{Bound, Key};
+use super::keys::{Bound, Key, Way};
 use super::nearest::nearest;
 use super::view::is_within_bounds;
 
@@ -16,6 +16,8 @@ const LARGEST: f64 = 1e9;
 pub(super) struct Field<'t> {
     pub path: String,
     pub key: &'static Key,
+    /// In which way its file is written.
+    pub way: Way,
     pub value: &'t DeValue<'t>,
     pub span: Span,
 }
@@ -23,7 +25,7 @@ pub(super) struct Field<'t> {
 impl Field<'_> {
     /// How the key is written.
     pub fn advice(&self) -> String {
-        format!("write {}", self.key.template())
+        format!("write {}", self.key.template(self.way))
     }
 
     pub fn wrong_type<T>(&self, sink: &mut Sink) -> Option<T> {

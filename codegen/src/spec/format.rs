@@ -2,9 +2,9 @@
 
 use super::keys::Bound::{Angle, Any, NonNegative, Positive};
 use super::keys::Kind::{
-    Along, Angles, Choice, Choices, Coordinate, Map, Name, NameLists, Number, Order, Pair, Text, Vector,
+    Along, Angles, Choice, Choices, Coordinate, Map, Name, NameLists, Number, Order, Pair, Tables, Text, Vector,
 };
-use super::keys::{Key, Kind, Table};
+use super::keys::{Key, Kind, Table, Way};
 
 pub(super) static ROBOT: Table = Table {
     noun: "a robot",
@@ -176,8 +176,16 @@ pub(super) static MAX_SPEED: Table = Table {
 
 /// Words for the platform's rotation, in the order of `Rotation`.
 pub(super) const ROTATIONS: &[&str] = &["none", "pitch", "roll"];
-/// Words for the half steps, in the order of `HalfSteps`.
+/// Words for the half steps, in the order of `Then`.
 pub(super) const HALF_STEPS: &[&str] = &["mirrored", "distinct"];
+/// Words for what follows the last phase, in the order of `Then`.
+pub(super) const THEN: &[&str] = &["mirrored", "repeat"];
+/// Words for the virtual legs, in their order.
+pub(super) const LEGS: &[&str] = &["leg1", "leg2"];
+
+/// The two ways to write a gait's phases.
+pub(super) const TWO_WAYS: &str = "a gait has either `half_steps` with `limits.half_step_duration`, or a list of `[[phases]]`, each with \
+                                   its `duration`, with `[cycle]`";
 
 pub(super) static GAIT: Table = Table {
     noun: "a gait",
@@ -197,11 +205,40 @@ pub(super) static GAIT: Table = Table {
             "half_steps",
             Choice(HALF_STEPS),
             "",
-            "Whether the second half step mirrors the first one, with the virtual legs exchanged.",
-        ),
+            "Short for `phases` of the same duration without flight: whether the second half step, on leg 2, mirrors the first one.",
+        )
+        .only(Way::Short),
+        Key::new(
+            "phases",
+            Tables(&PHASE),
+            "",
+            "What stands on the ground, one phase after another, leg 1 first; in place of `half_steps`.",
+        )
+        .only(Way::Long),
+        Key::new("cycle", Kind::Table(&CYCLE), "", "What follows the last of the `phases`.").only(Way::Long),
         Key::new("polynomial_order", Order(&[4, 6, 8]), "", "Order of the joints' polynomials in time.").or("4"),
         Key::new("limits", Kind::Table(&LIMITS), "", "What a motion must keep to."),
     ],
+};
+
+pub(super) static PHASE: Table = Table {
+    noun: "a phase",
+    doc: "What stands on the ground for a while.",
+    keys: &[
+        Key::new("stance", Choices(LEGS), "", "The virtual leg that stands, such as [\"leg1\"]; [] in flight."),
+        Key::new("duration", Pair(Positive), "s", "Shortest and longest."),
+    ],
+};
+
+pub(super) static CYCLE: Table = Table {
+    noun: "the cycle",
+    doc: "How a list of phases becomes a cycle.",
+    keys: &[Key::new(
+        "then",
+        Choice(THEN),
+        "",
+        "After the last phase: \"mirrored\", the same once more with the virtual legs' roles exchanged; \"repeat\", the first phase.",
+    )],
 };
 
 /// Words for the directions of motion.
@@ -238,7 +275,8 @@ pub(super) static LIMITS: Table = Table {
             "m",
             "Height of the parabola above which the swing foot stays.",
         ),
-        Key::new("half_step_duration", Pair(Positive), "s", "Shortest and longest half step."),
+        Key::new("half_step_duration", Pair(Positive), "s", "With `half_steps`: shortest and longest half step.")
+            .only(Way::Short),
         Key::new(
             "min_platform_height",
             Number(NonNegative),

@@ -1,5 +1,5 @@
 //! A gait file → [`Gait`]: the values of its tables. How they fit the robot is checked in `pairing.rs`, how
-//! they fit each other in `coordinates.rs`.
+//! they fit each other in `coordinates.rs` and `phases.rs`.
 
 use super::coordinates;
 use super::decode::NameLists;
@@ -9,9 +9,10 @@ use super::locked;
 use super::mirror;
 use super::name;
 use super::pairing;
+use super::phases::{self, Written};
 use super::robot::RobotFile;
 use super::syntax;
-use super::types::{Gait, HalfSteps, Limits, Rotation};
+use super::types::{Gait, Limits, Rotation, Then};
 use super::view::View;
 
 /// Reads a gait and checks it against its robot.
@@ -37,14 +38,16 @@ pub(super) struct RawGait {
     pub moves: Option<At<Vec<usize>>>,
     pub rotation: Option<At<Rotation>>,
     pub unactuated: Option<At<String>>,
-    pub half_steps: Option<At<HalfSteps>>,
+    pub phases: Written,
+    pub then: Option<At<Then>>,
 }
 
 fn read(path: &str, text: &str, robot: &RobotFile, sink: &mut Sink) -> Option<Gait> {
     let root = syntax::document(text, sink)?;
-    let root = View::open(&root, &format::GAIT, String::new(), 0..0, sink);
+    let root = View::of_file(&root, &format::GAIT, sink);
     let name = name::of_gait(path, &root, sink);
-    let platform = root.table("platform", sink);
+    let (platform, limits) = (root.table("platform", sink), root.table("limits", sink));
+    let (phases, then) = phases::read(&root, limits.as_ref(), sink);
     let raw = RawGait {
         virtual_legs: root.name_lists("virtual_legs", sink),
         moves: platform.as_ref().and_then(|p| p.choices("moves", sink)),
@@ -53,15 +56,15 @@ fn read(path: &str, text: &str, robot: &RobotFile, sink: &mut Sink) -> Option<Ga
             span: word.span,
         }),
         unactuated: coordinates::single(&root, sink),
-        half_steps: root
-            .choice("half_steps", sink)
-            .map(|word| At { value: [HalfSteps::Mirrored, HalfSteps::Distinct][word.value.min(1)], span: word.span }),
+        phases,
+        then,
     };
     let polynomial_order = match root.has("polynomial_order") {
         true => root.order("polynomial_order", sink).and_then(|order| usize::try_from(order.value).ok()),
         false => Some(4),
     };
-    let limits = root.table("limits", sink).and_then(|view| limits(&view, sink));
+    let limits = limits.and_then(|view| read_limits(&view, sink));
+    let phases = phases::phases(&raw, &root.key_span("phases"), sink);
 
     let locked = if root.has("locked") { root.angles("locked", sink) } else { Some(Vec::new()) };
     let lateral = coordinates::lateral(&raw, sink);
@@ -80,17 +83,16 @@ fn read(path: &str, text: &str, robot: &RobotFile, sink: &mut Sink) -> Option<Ga
         lateral: lateral?,
         rotation: raw.rotation?.value,
         unactuated: unactuated?,
-        half_steps: raw.half_steps?.value,
+        phases: phases?,
         polynomial_order: polynomial_order?,
         limits: limits?,
     })
 }
 
-fn limits(view: &View<'_>, sink: &mut Sink) -> Option<Limits> {
+fn read_limits(view: &View<'_>, sink: &mut Sink) -> Option<Limits> {
     let friction = view.number("friction", sink);
     let min_vertical_force = view.number("min_vertical_force", sink);
     let swing_clearance = view.number("swing_clearance", sink);
-    let half_step_duration = view.pair("half_step_duration", sink);
     let min_platform_height = match view.has("min_platform_height") {
         true => view.number("min_platform_height", sink).map(|height| height.value),
         false => Some(0.0),
@@ -103,7 +105,6 @@ fn limits(view: &View<'_>, sink: &mut Sink) -> Option<Limits> {
         friction: friction?.value,
         min_vertical_force: min_vertical_force?.value,
         swing_clearance: swing_clearance?.value,
-        half_step_duration: half_step_duration?.value,
         min_platform_height: min_platform_height?,
         body_clearance: body_clearance?,
     })

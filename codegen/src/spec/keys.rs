@@ -21,7 +21,20 @@ pub(super) struct Key {
     pub unit: &'static str,
     /// What is used where the key is absent; `None`: it must be given.
     pub default: Option<&'static str>,
+    /// The only way to write a file in which the key stands, where there are two.
+    pub way: Option<Way>,
     pub doc: &'static str,
+}
+
+/// Two ways to write the same; a file chooses one by the keys that it has. Where it has none of either, it is the short one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Way {
+    Short,
+    Long,
+}
+
+impl Way {
+    pub const ALL: [Way; 2] = [Way::Short, Way::Long];
 }
 
 /// What a key holds.
@@ -51,6 +64,8 @@ pub(super) enum Kind {
     /// Angles under names of joints.
     Angles,
     Table(&'static Table),
+    /// A list of tables.
+    Tables(&'static Table),
     /// Tables under names of the user's choice, each of one of these forms.
     Map(&'static [&'static Table]),
 }
@@ -97,7 +112,7 @@ impl Bound {
 
 impl Key {
     pub const fn new(name: &'static str, kind: Kind, unit: &'static str, doc: &'static str) -> Self {
-        Self { name, kind, unit, default: None, doc }
+        Self { name, kind, unit, default: None, way: None, doc }
     }
 
     /// The key may be absent; then this is used.
@@ -106,19 +121,35 @@ impl Key {
         self
     }
 
-    /// How the key is written, with its unit: `range = [lowest, highest]  # rad`.
-    pub fn template(&self) -> String {
+    /// The key stands only in a file that is written in this way.
+    pub const fn only(mut self, way: Way) -> Self {
+        self.way = Some(way);
+        self
+    }
+
+    /// Whether it can stand in a file that is written in this way.
+    pub fn is_of(&self, way: Way) -> bool {
+        self.way.is_none_or(|own| own == way)
+    }
+
+    /// Whether such a file must have it.
+    pub fn is_required(&self, way: Way) -> bool {
+        self.default.is_none() && self.is_of(way)
+    }
+
+    /// How the key is written in such a file, with its unit: `range = [lowest, highest]  # rad`.
+    pub fn template(&self, way: Way) -> String {
         let comment = if self.unit.is_empty() { String::new() } else { format!("  # {}", self.unit) };
         match self.kind {
             Kind::Map(_) => format!("[{}.<name>]", self.name),
-            _ => format!("{} = {}{comment}", self.name, self.kind.shape()),
+            _ => format!("{} = {}{comment}", self.name, self.kind.shape(way)),
         }
     }
 }
 
 impl Kind {
     /// A value of this kind with the user's part left open.
-    pub fn shape(&self) -> String {
+    pub fn shape(&self, way: Way) -> String {
         match self {
             Self::Text | Self::Name => "\"…\"".into(),
             Self::Choice(words) => words.iter().map(|w| format!("\"{w}\"")).collect::<Vec<_>>().join(" or "),
@@ -127,16 +158,18 @@ impl Kind {
             Self::Vector(_) => "[x, y, z]".into(),
             Self::Pair(_) => "[lowest, highest]".into(),
             Self::Choices(words) => {
-                let words: Vec<_> = words.iter().take(2).map(|w| format!("\"{w}\"")).collect();
+                let some = &words[..words.len().saturating_sub(1)];
+                let words: Vec<_> = some.iter().map(|w| format!("\"{w}\"")).collect();
                 format!("[{}, …]", words.join(", "))
             }
             Self::NameLists => "[[\"…\", \"…\"], [\"…\", \"…\"]]".into(),
             Self::Coordinate => "\"platform\" or \"leg1.<joint>\"".into(),
             Self::Table(table) => {
-                let keys = table.keys.iter().filter(|k| k.default.is_none());
-                let parts: Vec<_> = keys.map(|k| format!("{} = {}", k.name, k.kind.shape())).collect();
+                let keys = table.keys.iter().filter(|k| k.is_required(way));
+                let parts: Vec<_> = keys.map(|k| format!("{} = {}", k.name, k.kind.shape(way))).collect();
                 format!("{{ {} }}", parts.join(", "))
             }
+            Self::Tables(table) => format!("[{}, …]", Self::Table(table).shape(way)),
             Self::Angles => "{ <joint> = … }".into(),
             Self::Map(_) => "{ <name> = { … } }".into(),
         }
@@ -154,6 +187,7 @@ impl Kind {
             Self::Choices(_) => "a list of texts",
             Self::NameLists => "two lists of names",
             Self::Angles | Self::Table(_) | Self::Map(_) => "a table",
+            Self::Tables(_) => "a list of tables",
         }
     }
 }

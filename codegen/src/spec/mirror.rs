@@ -7,16 +7,17 @@ use super::diagnostic::Sink;
 use super::format::DIRECTIONS;
 use super::gait::RawGait;
 use super::pairing::place;
+use super::phases::Written;
 use super::robot::RobotFile;
-use super::types::HalfSteps;
+use super::types::Then;
 
 /// Mirrored half steps: the virtual legs are alike and their hips at the same place; where the platform
 /// rolls, they are mirror images.
 pub(super) fn check(raw: &RawGait, legs: &[Vec<usize>; 2], robot: &RobotFile, sink: &mut Sink) {
-    let (Some(half_steps), Some(rotation)) = (&raw.half_steps, &raw.rotation) else {
+    let (Some(then), Some(rotation)) = (&raw.then, &raw.rotation) else {
         return;
     };
-    let (Some(&second), HalfSteps::Mirrored) = (legs[1].first(), half_steps.value) else {
+    let (Some(&second), Then::Mirrored) = (legs[1].first(), then.value) else {
         return;
     };
     let (why, label) = match robot.robot.exchange(legs, rotation.value) {
@@ -30,8 +31,12 @@ pub(super) fn check(raw: &RawGait, legs: &[Vec<usize>; 2], robot: &RobotFile, si
             (why, place(robot, second, |p| &p.mount, "a mount of virtual leg 2"))
         }
     };
-    let title = format!("the half steps cannot mirror each other: {why}");
-    let help = "write half_steps = \"distinct\", choose other virtual legs, or correct their mounts";
-    sink.report(Code::NotMirrored, title, &half_steps.span, "the virtual legs exchange their roles", help);
+    let (halves, instead) = match raw.phases {
+        Written::HalfSteps(_) => ("half steps", "half_steps = \"distinct\""),
+        Written::List(_) => ("halves of the cycle", "then = \"repeat\", with phases on both legs"),
+    };
+    let title = format!("the {halves} cannot mirror each other: {why}");
+    let help = format!("write {instead}, choose other virtual legs, or correct their mounts");
+    sink.report(Code::NotMirrored, title, &then.span, "the virtual legs exchange their roles", help);
     sink.beside(label);
 }

@@ -3,8 +3,8 @@
 //! `robot.toml` describes the real robot once: its links, joints, legs and actuators. A gait file says which
 //! legs move together, how the platform may move, which coordinate is unactuated, and the limits. The format
 //! is defined in `format.rs`, from which [`robot_schema`] and [`gait_schema`] are written; what a spec must
-//! satisfy beyond its form is checked in `bodies.rs`, `tree.rs`, `chain.rs` (robot), `pairing.rs`, `mirror.rs` and
-//! `coordinates.rs` (gait).
+//! satisfy beyond its form is checked in `bodies.rs`, `tree.rs`, `chain.rs` (robot), `pairing.rs`, `mirror.rs`,
+//! `coordinates.rs` and `phases.rs` (gait).
 //!
 //! `set.rs` changes numbers where they stand in the files.
 //!
@@ -35,6 +35,7 @@ pub(crate) mod modules;
 pub mod name;
 mod nearest;
 mod pairing;
+mod phases;
 mod rigid;
 mod robot;
 mod schema;

@@ -127,7 +127,8 @@ fn unusable_in_rust(name: &str) -> Option<String> {
     if let Some(why) = unusable_as_module(&module) {
         return Some(format!("its module would be `{module}`, {why}"));
     }
-    let taken = ITEMS.contains(&ty.as_str()) || !ty.starts_with(|c: char| c.is_ascii_alphabetic());
+    let item = ty.strip_prefix(OF_FLIGHT).unwrap_or(&ty);
+    let taken = ITEMS.contains(&item) || !ty.starts_with(|c: char| c.is_ascii_alphabetic());
     taken.then(|| format!("its type would be `{ty}`, which the generated code has or needs itself"))
 }
 
@@ -181,7 +182,10 @@ const DEVICES: &[&str] = &[
     "lpt3", "lpt4", "lpt5", "lpt6", "lpt7", "lpt8", "lpt9",
 ];
 
-/// What a gait's module names or defines beside the gait's type; `tests/laws.rs` compares.
+/// What is before the name of a type that a kernel of flight returns; behind it is the name of its twin of stance.
+pub const OF_FLIGHT: &str = "Flight";
+
+/// What a gait's module names or defines beside the gait's type, but for types of flight; `tests/laws.rs` compares.
 pub const ITEMS: &[&str] = &[
     "CentreOfMass",
     "Curvature",
@@ -195,6 +199,8 @@ pub const ITEMS: &[&str] = &[
     "InertiaAndBias",
     "Inverse",
     "InverseJacobian",
+    "Landing",
+    "LandingCurvature",
     "Late",
     "LateGradient",
     "Momentum",
@@ -214,6 +220,8 @@ pub const ITEMS: &[&str] = &[
     "Some",
     "SwingVelocity",
     "T",
+    "Takeoff",
+    "TakeoffCurvature",
     "Touchdown",
     "TouchdownCurvature",
 ];
@@ -231,11 +239,38 @@ mod tests {
 
     #[test]
     fn names_that_rust_or_the_generated_code_needs() {
-        for good in ["trot", "Trot", "a_b", "x1", "f64", "str", "test", "union", "description", "clone", "a__"] {
+        for good in [
+            "trot",
+            "Trot",
+            "a_b",
+            "x1",
+            "f64",
+            "flight",
+            "flying",
+            "str",
+            "test",
+            "union",
+            "description",
+            "clone",
+            "a__",
+        ] {
             assert_eq!(unusable_in_rust(good), None, "{good}");
         }
         let keywords = ["fn", "Fn", "FN", "SELF", "Self", "self_", "Self__", "dyn", "gen", "async"];
-        let items = ["Option", "option", "some", "none", "ok", "t", "DESCRIPTION", "impact", "Inverse_Jacobian"];
+        let items = [
+            "Option",
+            "option",
+            "some",
+            "none",
+            "ok",
+            "t",
+            "DESCRIPTION",
+            "impact",
+            "Inverse_Jacobian",
+            "takeoff",
+            "Landing",
+            "flight_late",
+        ];
         let modules =
             ["Math", "gaits", "specification", "Families", "whole", "WHOLE2", "std", "core", "piaffe", "con", "LPT1"];
         for bad in keywords.iter().chain(&items).chain(&modules) {

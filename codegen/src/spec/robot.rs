@@ -61,7 +61,7 @@ pub fn parse_robot(path: &str, text: &str) -> Result<RobotFile, Vec<Diagnostic>>
 
 fn read(text: &str, sink: &mut Sink) -> Option<(Robot, Vec<LegPlaces>, Axes)> {
     let root = syntax::document(text, sink)?;
-    let root = View::open(&root, &format::ROBOT, String::new(), 0..0, sink);
+    let root = View::of_file(&root, &format::ROBOT, sink);
     let name = name::of_robot(&root, sink);
     let gravity = root.number("gravity", sink);
     let parts = parts(&root, sink);

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::format;
-use super::keys::{Bound, Key, Kind, Table};
+use super::keys::{Bound, Key, Kind, Table, Way};
 
 /// JSON schema (draft 2020-12) of `robot.toml`.
 pub fn robot_schema() -> String {
@@ -18,15 +18,42 @@ pub fn gait_schema() -> String {
 fn schema(root: &Table) -> String {
     let mut out = String::from("{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n");
     let _ = write!(out, "  \"title\": {},\n  ", quoted(root.noun.trim_start_matches("a ")));
-    out.push_str(table(root, root.doc, 1).trim_start_matches("{\n").trim_start());
-    out.push('\n');
+    let keys = table(root, root.doc, 1);
+    let [keys, ways] = [keys.trim_start_matches("{\n").trim_start(), &ways(root)];
+    // In the place of the brace at the end.
+    let keys = keys.strip_suffix("\n}").unwrap_or(keys);
+    let _ = write!(out, "{keys}{ways}\n}}\n");
     out
+}
+
+/// What the keys of one way demand and exclude, and those of the other, where a file can be written in two.
+fn ways(root: &Table) -> String {
+    let each: Vec<_> = Way::ALL.iter().filter_map(|way| demands(root, *way)).collect();
+    if each.is_empty() { String::new() } else { format!(",\n  \"oneOf\": [\n    {}\n  ]", each.join(",\n    ")) }
+}
+
+/// What a file of this way must have and must not have in a table, beside what all have.
+fn demands(table: &Table, way: Way) -> Option<String> {
+    let required: Vec<_> =
+        table.keys.iter().filter(|k| k.way.is_some() && k.is_required(way)).map(|k| k.name).collect();
+    let of_key = |key: &Key| match &key.kind {
+        _ if !key.is_of(way) => Some(format!("{}: false", quoted(key.name))),
+        Kind::Table(inner) => demands(inner, way).map(|inner| format!("{}: {inner}", quoted(key.name))),
+        _ => None,
+    };
+    let properties: Vec<_> = table.keys.iter().filter_map(of_key).collect();
+    let parts = [
+        (!required.is_empty()).then(|| format!("\"required\": {}", words(required.iter().copied()))),
+        (!properties.is_empty()).then(|| format!("\"properties\": {{ {} }}", properties.join(", "))),
+    ];
+    let parts: Vec<_> = parts.into_iter().flatten().collect();
+    (!parts.is_empty()).then(|| format!("{{ {} }}", parts.join(", ")))
 }
 
 /// An object with fixed keys.
 fn table(table: &Table, description: &str, depth: usize) -> String {
     let pad = "  ".repeat(depth);
-    let required = table.keys.iter().filter(|k| k.default.is_none()).map(|k| k.name);
+    let required = table.keys.iter().filter(|k| k.default.is_none() && k.way.is_none()).map(|k| k.name);
     let properties: Vec<_> =
         table.keys.iter().map(|k| format!("{pad}  {}: {}", quoted(k.name), property(k, depth + 1))).collect();
     let end = "  ".repeat(depth - 1);
@@ -51,6 +78,9 @@ fn property(key: &Key, depth: usize) -> String {
     let rest = match &key.kind {
         Kind::Table(inner) => {
             return table(inner, &description, depth + 1);
+        }
+        Kind::Tables(inner) => {
+            format!("\"type\": \"array\", \"minItems\": 1, \"items\": {}\n{pad}", table(inner, inner.doc, depth + 1))
         }
         Kind::Map(forms) => format!(
             "\"type\": \"object\", \"minProperties\": 1,\n\
@@ -96,6 +126,7 @@ fn value(kind: &Kind) -> String {
         Kind::Angles => format!("\"type\": \"object\", \"additionalProperties\": {{ {} }}", number(Bound::Angle)),
         // Tables are written by `property`.
         Kind::Table(_) | Kind::Map(_) => "\"type\": \"object\"".into(),
+        Kind::Tables(_) => "\"type\": \"array\"".into(),
     }
 }
 

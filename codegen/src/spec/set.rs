@@ -1,7 +1,7 @@
 //! Numbers of a specification changed where they stand, so that the files that come of it say all.
 //!
 //! Their names are the keys that lead to them, as in `links.thigh.mass`; of a list's elements those that say what they are:
-//! `legs.fore_left.mount.x`, `joints.knee.range.lower`. Places of legs' mounts at the same distance to either side stay so.
+//! `legs.fore_left.mount.x`, `joints.knee.range.lower`, `phases.1.duration.shortest`. Places of legs' mounts at the same distance to either side stay so.
 
 use super::nearest::nearest;
 use std::ops::Range;
@@ -81,7 +81,11 @@ fn in_value(value: &DeValue, span: Range<usize>, name: String, key: &str, number
         DeValue::Table(table) => return in_table(table, &name, numbers),
         DeValue::Array(elements) => {
             for (k, element) in elements.iter().enumerate() {
-                let name = format!("{name}.{}", part(key, elements.len(), k));
+                let part = match element.get_ref() {
+                    DeValue::Table(_) => (k + 1).to_string(),
+                    _ => part(key, elements.len(), k),
+                };
+                let name = format!("{name}.{part}");
                 in_value(element.get_ref(), element.span(), name, key, numbers);
             }
             return;
@@ -93,7 +97,7 @@ fn in_value(value: &DeValue, span: Range<usize>, name: String, key: &str, number
     numbers.extend(read.map(|value| Number { name, value, span }));
 }
 
-/// What the k-th element of a list is.
+/// What the k-th element of a list is, of those that are no tables.
 fn part(key: &str, length: usize, k: usize) -> String {
     let names: &[&str] = match (key, length) {
         ("products", 3) => &["yz", "zx", "xy"],
@@ -128,6 +132,17 @@ mod tests {
         assert_eq!(changed, ROBOT.replace("[-1.5, 0.0]", "[-2, 0.0]"));
         assert_eq!(set(ROBOT, "links.thigh", 1.0), None);
         assert_eq!(set("[", "gravity", 1.0), None);
+    }
+
+    #[test]
+    fn phases_are_called_by_their_numbers() {
+        for count in 1..=3 {
+            let list: String = (0..count).map(|k| format!("[[phases]]\nduration = [0.{k}1, 0.5]\n")).collect();
+            for (k, from) in ["[0.01,", "[0.11,", "[0.21,"].into_iter().take(count).enumerate() {
+                let changed = set(&list, &format!("phases.{}.duration.shortest", k + 1), 0.125).unwrap();
+                assert_eq!(changed, list.replace(from, "[0.125,"));
+            }
+        }
     }
 
     #[test]

@@ -86,38 +86,54 @@ fn the_shipped_robot() {
 
 #[test]
 fn the_shipped_gaits() {
-    let limits = |longest| Limits {
+    let limits = Limits {
         friction: 1.0,
         min_vertical_force: 10.0,
         swing_clearance: 0.005,
-        half_step_duration: [0.05, longest],
         min_platform_height: 0.0,
         body_clearance: 0.0,
     };
-    let gait = |name: &str, virtual_legs, rotation, unactuated, half_steps, longest| Gait {
+    let gait = |name: &str, virtual_legs, rotation, unactuated, then, longest| Gait {
         name: name.into(),
         virtual_legs,
         locked: Vec::new(),
         lateral: rotation == Rotation::Roll,
         rotation,
         unactuated,
-        half_steps,
+        phases: Phases::half_steps(then, [0.05, longest]),
         polynomial_order: 4,
-        limits: limits(longest),
+        limits: limits.clone(),
     };
     let haunch = Unactuated::Joint { leg: 0, joint: 0 };
     assert_eq!(
         shipped_gait("trot"),
-        gait("trot", [vec![0, 3], vec![1, 2]], Rotation::None, haunch, HalfSteps::Mirrored, 2.0)
+        gait("trot", [vec![0, 3], vec![1, 2]], Rotation::None, haunch, Then::Mirrored, 2.0)
     );
     assert_eq!(
         shipped_gait("amble"),
-        gait("amble", [vec![1, 3], vec![0, 2]], Rotation::Roll, Unactuated::Platform, HalfSteps::Mirrored, 2.0)
+        gait("amble", [vec![1, 3], vec![0, 2]], Rotation::Roll, Unactuated::Platform, Then::Mirrored, 2.0)
     );
     assert_eq!(
         shipped_gait("curvet"),
-        gait("curvet", [vec![2, 3], vec![0, 1]], Rotation::Pitch, Unactuated::Platform, HalfSteps::Distinct, 0.5)
+        gait("curvet", [vec![2, 3], vec![0, 1]], Rotation::Pitch, Unactuated::Platform, Then::Repeat, 0.5)
     );
+}
+
+/// The trot with a flight after each stance.
+fn running_trot() -> String {
+    let short = |line: &&str| !line.starts_with("half_step");
+    let trot = read("gaits/trot.toml");
+    trot.lines().filter(short).collect::<Vec<_>>().join("\n")
+        + "\n\n[[phases]]\nstance = [\"leg1\"]\nduration = [0.05, 2.0]\n\n[[phases]]\nstance = []\nduration = [0.02, 0.5]\n\n\
+           [cycle]\nthen = \"mirrored\"\n"
+}
+
+#[test]
+fn a_list_of_phases() {
+    let gait = parse_gait("trot.toml", &running_trot(), &shipped_robot());
+    let list = vec![Phase { stance: Some(0), duration: [0.05, 2.0] }, Phase { stance: None, duration: [0.02, 0.5] }];
+    let phases = Phases { list, then: Then::Mirrored, half_steps: false };
+    assert_eq!(gait.unwrap_or_else(|found| panic!("{}", rendered(found))), Gait { phases, ..shipped_gait("trot") });
 }
 
 /// `BLESS=1 cargo test` writes them anew.
@@ -220,6 +236,8 @@ fn huge_inputs() {
         trot.replace("virtual_legs = [", &format!("virtual_legs = [{}", "[\"fore_left\"], ".repeat(N))),
         trot.replace("moves = [", &format!("moves = [{}", "\"y\", ".repeat(N))),
         format!("{trot}\n[locked]\n{}", many(&|k| format!("joint_{k} = 0.0\n"))),
+        running_trot() + &"[[phases]]\nstance = []\nduration = [0.02, 0.5]\n".repeat(N),
+        running_trot().replace("[\"leg1\"]", &list("\"leg1\"")),
     ];
     for (k, text) in robots.iter().chain(&gaits).enumerate() {
         assert!(text.len() > N, "{k}: nothing was replaced");
@@ -263,8 +281,8 @@ fn accidents() {
             }
         }
     }
-    for gait in ["trot", "amble", "curvet"] {
-        let text = read(&format!("gaits/{gait}.toml"));
+    let gaits = ["trot", "amble", "curvet"].map(|gait| read(&format!("gaits/{gait}.toml")));
+    for text in gaits.into_iter().chain([running_trot()]) {
         for _ in 0..1000 {
             if let Err(found) = parse_gait("gait.toml", &dice.damage(&text), &robot) {
                 refuse(Some(found));
@@ -311,6 +329,8 @@ impl Dice {
             "\"fore_left\"",
             "roll",
             "[links.x]",
+            "[[phases]]",
+            "\"leg2\"",
             ".",
             "#",
         ];

@@ -148,7 +148,8 @@ pub struct Gait {
     pub lateral: bool,
     pub rotation: Rotation,
     pub unactuated: Unactuated,
-    pub half_steps: HalfSteps,
+    /// In the order in which they follow each other.
+    pub phases: Phases,
     /// Order of the joint polynomials (eq. 15): 4, 6 or 8.
     pub polynomial_order: usize,
     pub limits: Limits,
@@ -164,6 +165,19 @@ pub enum Rotation {
     Roll,
 }
 
+impl Rotation {
+    /// Why a robot whose platform rotates like this cannot fly, if it cannot.
+    pub const fn keeps_on_the_ground(self) -> Option<&'static str> {
+        match self {
+            Rotation::None | Rotation::Pitch => None,
+            Rotation::Roll => Some(
+                "the platform rolls: in stance the two real feet carry the pitch and yaw moments that the model \
+                 leaves out, in flight nobody does",
+            ),
+        }
+    }
+}
+
 /// The coordinate β that no actuator drives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unactuated {
@@ -174,12 +188,43 @@ pub enum Unactuated {
     Joint { leg: usize, joint: usize },
 }
 
+/// A cyclic list of phases.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Phases {
+    pub list: Vec<Phase>,
+    pub then: Then,
+    /// Whether they are given as half steps, all with the duration in `limits.half_step_duration`.
+    pub half_steps: bool,
+}
+
+/// What stands on the ground for a while.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Phase {
+    /// The virtual leg that stands, 0 or 1; none in flight.
+    pub stance: Option<usize>,
+    /// Shortest and longest, s.
+    pub duration: [f64; 2],
+}
+
+/// What follows the last phase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum HalfSteps {
-    /// The legs swap roles after each half step: one half step defines the gait.
+pub enum Then {
+    /// The same with the virtual legs' roles exchanged: the list is half a cycle.
     Mirrored,
-    /// Two different half steps.
-    Distinct,
+    /// The first phase: the list is the whole cycle.
+    Repeat,
+}
+
+impl Phases {
+    /// One half step that its mirror image follows, or two different ones, on leg 1 and on leg 2.
+    pub fn half_steps(then: Then, duration: [f64; 2]) -> Phases {
+        let legs = match then {
+            Then::Mirrored => 0..1,
+            Then::Repeat => 0..2,
+        };
+        let list = legs.map(|leg| Phase { stance: Some(leg), duration }).collect();
+        Phases { list, then, half_steps: true }
+    }
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -189,8 +234,6 @@ pub struct Limits {
     pub min_vertical_force: f64,
     /// Height of the swing parabola, m.
     pub swing_clearance: f64,
-    /// Shortest and longest half step, s.
-    pub half_step_duration: [f64; 2],
     /// Of the platform's mass centre, m.
     pub min_platform_height: f64,
     /// Of everything but feet above the ground, m.

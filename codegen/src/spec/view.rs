@@ -6,7 +6,8 @@ use toml::de::{DeTable, DeValue};
 use super::Code;
 use super::diagnostic::{At, Sink, Span};
 use super::field::{Field, found};
-use super::keys::{Key, Kind, Table};
+use super::format::TWO_WAYS;
+use super::keys::{Key, Kind, Table, Way};
 use super::name;
 use super::nearest::nearest;
 
@@ -31,20 +32,41 @@ pub(super) fn is_within_bounds(entries: usize, path: &str, span: &Span, sink: &m
 pub(super) struct View<'t> {
     entries: &'t DeTable<'t>,
     form: &'static Table,
+    /// In which way the file is written, and the key that says so.
+    way: (Way, Option<Said>),
     /// Dotted path for messages, empty at the root.
     path: String,
     /// Where the table is named.
     pub at: Span,
 }
 
+/// A key that is there, and where.
+type Said = At<&'static str>;
+
 impl<'t> View<'t> {
-    /// Takes hold of a table; reports its unknown and its missing keys.
-    pub fn open(entries: &'t DeTable<'t>, form: &'static Table, path: String, at: Span, sink: &mut Sink) -> Self {
-        let view = Self { entries, form, path, at };
-        if is_within_bounds(entries.len(), &view.path, &view.at, sink) {
-            view.check_keys(sink);
+    /// Takes hold of a whole file; reports its unknown and its missing keys.
+    pub fn of_file(entries: &'t DeTable<'t>, form: &'static Table, sink: &mut Sink) -> Self {
+        let says = |key: &'static Key| {
+            let span = entries.get_key_value(key.name)?.0.span();
+            Some((key.way?, At { value: key.name, span }))
+        };
+        // Where there are keys of both, the long way is the one that says all.
+        let said = form.keys.iter().filter_map(says).min_by_key(|(way, _)| *way != Way::Long);
+        let way = said.map_or((Way::Short, None), |(way, key)| (way, Some(key)));
+        Self { entries, form, way, path: String::new(), at: 0..0 }.checked(sink)
+    }
+
+    /// Takes hold of a table in it.
+    fn within(&self, entries: &'t DeTable<'t>, form: &'static Table, path: String, at: Span, sink: &mut Sink) -> Self {
+        Self { entries, form, way: self.way.clone(), path, at }.checked(sink)
+    }
+
+    fn checked(self, sink: &mut Sink) -> Self {
+        if is_within_bounds(self.entries.len(), &self.path, &self.at, sink) {
+            self.check_keys(sink);
+            self.check_way(sink);
         }
-        view
+        self
     }
 
     fn check_keys(&self, sink: &mut Sink) {
@@ -75,12 +97,10 @@ impl<'t> View<'t> {
 
     /// Reports the absent keys, except those that an unknown key was meant to be.
     fn check_missing(&self, meant: &[&str], sink: &mut Sink) {
-        let missing: Vec<&Key> = self
-            .form
-            .keys
-            .iter()
-            .filter(|k| k.default.is_none() && !self.entries.contains_key(k.name) && !meant.contains(&k.name))
-            .collect();
+        let (way, said) = &self.way;
+        let required = self.form.keys.iter().filter(|k| k.is_required(*way));
+        let missing: Vec<&Key> =
+            required.filter(|k| !self.entries.contains_key(k.name) && !meant.contains(&k.name)).collect();
         if missing.is_empty() {
             return;
         }
@@ -91,12 +111,33 @@ impl<'t> View<'t> {
         } else {
             format!("`{}` needs {names}", self.path)
         };
-        let lines: Vec<_> = missing.iter().map(|k| k.template()).collect();
-        let (label, help) = match &lines[..] {
+        let lines: Vec<_> = missing.iter().map(|k| k.template(*way)).collect();
+        let (label, mut help) = match &lines[..] {
             [line] => ("a key is missing here", format!("add {line}")),
             _ => ("keys are missing here", format!("add\n{}", lines.join("\n"))),
         };
+        if self.path.is_empty() && said.is_none() && missing.iter().any(|k| k.way.is_some()) {
+            help = format!("{help}\n{TWO_WAYS}");
+        }
         sink.report(Code::MissingKey, title, &self.at, label, help);
+    }
+
+    /// Reports the keys that stand only in a file that is written in the other way.
+    fn check_way(&self, sink: &mut Sink) {
+        let (way, Some(said)) = &self.way else {
+            return;
+        };
+        let here = |key: &&Key| !key.is_of(*way) && self.entries.contains_key(key.name);
+        let keys: Vec<&Key> = self.form.keys.iter().filter(here).collect();
+        let Some(first) = keys.first() else {
+            return;
+        };
+        let names: Vec<_> = keys.iter().map(|k| format!("`{}`", self.join(k.name))).collect();
+        let goes = if keys.len() == 1 { "does" } else { "do" };
+        let title = format!("{} {goes} not go with `{}`", names.join(" and "), said.value);
+        let help = format!("{TWO_WAYS}: remove what is too much");
+        sink.report(Code::TwoWays, title, &self.key_span(first.name), "says it in the other way", help);
+        sink.beside(sink.label(&said.span, "beside this key"));
     }
 
     /// All keys with their places, in the order of the file.
@@ -104,6 +145,11 @@ impl<'t> View<'t> {
         let mut names: Vec<_> = self.entries.iter().map(|(k, _)| (k.get_ref().as_ref(), k.span())).collect();
         names.sort_by_key(|(_, span)| span.start);
         names
+    }
+
+    /// Whether the file is written in the short way.
+    pub fn is_short(&self) -> bool {
+        self.way.0 == Way::Short
     }
 
     /// Whether the table was read as one of this form.
@@ -139,7 +185,7 @@ impl<'t> View<'t> {
     pub fn field(&self, name: &str) -> Option<Field<'t>> {
         let key = self.form.keys.iter().find(|k| k.name == name)?;
         let value = self.entries.get(name)?;
-        Some(Field { path: self.join(name), key, value: value.get_ref(), span: value.span() })
+        Some(Field { path: self.join(name), key, way: self.way.0, value: value.get_ref(), span: value.span() })
     }
 
     /// Where the key's name stands.
@@ -153,7 +199,25 @@ impl<'t> View<'t> {
         let (Kind::Table(form), DeValue::Table(entries)) = (&field.key.kind, field.value) else {
             return field.wrong_type(sink);
         };
-        Some(View::open(entries, form, field.path, self.key_span(name), sink))
+        Some(self.within(entries, form, field.path, self.key_span(name), sink))
+    }
+
+    /// The tables of a list, each called by its number, from 1.
+    pub fn tables(&self, name: &str, sink: &mut Sink) -> Option<Vec<Option<View<'t>>>> {
+        let field = self.field(name)?;
+        let (Kind::Tables(form), DeValue::Array(items)) = (&field.key.kind, field.value) else {
+            return field.wrong_type(sink);
+        };
+        if !is_within_bounds(items.len(), &field.path, &self.key_span(name), sink) {
+            return None;
+        }
+        let views = items.iter().enumerate().map(|(k, item)| match item.get_ref() {
+            DeValue::Table(entries) => {
+                Some(self.within(entries, form, format!("{}.{}", field.path, k + 1), item.span(), sink))
+            }
+            other => field.wrong_type_at(other, &item.span(), "a table", sink),
+        });
+        Some(views.collect())
     }
 
     /// The named tables of a map, in the order of the file; `form` picks each one's form.
@@ -181,7 +245,7 @@ impl<'t> View<'t> {
                 let view = match value.get_ref() {
                     DeValue::Table(inner) => {
                         let form = form(&child.value, inner);
-                        Some(View::open(inner, form, path, key.span(), sink))
+                        Some(self.within(inner, form, path, key.span(), sink))
                     }
                     other => {
                         let title = format!("`{path}` must be a table, not {}", found(other));

@@ -28,16 +28,32 @@ pub fn spec_file(path: &str) -> SpecFile {
     SpecFile { path: path.into(), text: std::fs::read_to_string(format!("{folder}{path}")).unwrap() }
 }
 
+/// A shipped gait's file with a list of phases: the legs that stand, from 1, in each of them; in flight none.
+pub fn with_phases(gait: &str, list: &[Option<usize>], then: &str) -> SpecFile {
+    let (_, _, file) = files(gait);
+    let short = |line: &&str| !line.starts_with("half_step");
+    let mut text: String = file.text.lines().filter(short).map(|line| format!("{line}\n")).collect();
+    for leg in list {
+        let stance = leg.map_or(String::new(), |leg| format!("\"leg{leg}\""));
+        text += &format!("\n[[phases]]\nstance = [{stance}]\nduration = [0.02, 0.5]\n");
+    }
+    SpecFile { text: format!("{text}\n[cycle]\nthen = \"{then}\"\n"), ..file }
+}
+
 /// The mechanism of a shipped gait.
 pub fn shipped(gait: &str) -> Mechanism {
     let (robot, gait) = specification(gait);
     Mechanism::new(&robot.locked(&gait.locked).unwrap(), &gait)
 }
 
-/// The same with all modes in which it can move.
+/// The same with all modes in which it can move, and all transitions.
 pub fn in_all_modes(gait: &str) -> Mechanism {
-    let mechanism = shipped(gait);
-    mechanism.clone().with_flight().unwrap_or(mechanism)
+    with_all(shipped(gait))
+}
+
+/// A mechanism with all modes in which it can move, and all transitions.
+pub fn with_all(mechanism: Mechanism) -> Mechanism {
+    mechanism.clone().with_flight().unwrap_or(mechanism.with_all_transitions())
 }
 
 /// The robot and the gait of a shipped gait.
@@ -70,7 +86,7 @@ impl Derived {
         let chosen = parameters(&robot);
         let values: Vec<f64> = chosen.iter().map(|p| p.value).collect();
         let mut family = Family::new(&robot, &gait, chosen).unwrap();
-        family.mechanism = family.mechanism.clone().with_flight().unwrap_or(family.mechanism);
+        family.mechanism = with_all(family.mechanism);
         let (model, kernels) = family_kernels(&family);
         let kernels = kernels.gait.into_iter().chain(kernels.sensitivity).chain(kernels.parameters).collect();
         let mut family = Derived { model, kernels, of_robot: vec![(PARAMETERS, values.clone())] };

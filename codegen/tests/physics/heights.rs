@@ -6,7 +6,7 @@ use super::robots::Draws;
 use super::state::State;
 use piaffe_codegen::dynamics::lowest;
 use piaffe_codegen::mechanism::{Mechanism, levers, points};
-use piaffe_codegen::spec::{Axis, Extent, Gait, HalfSteps, Robot, Rotation};
+use piaffe_codegen::spec::{Axis, Extent, Gait, Robot, Rotation, Then};
 
 type Matrix = [[f64; 3]; 3];
 
@@ -84,7 +84,7 @@ fn compare(robot: &Robot, gait: &Gait, draws: &mut Draws) {
             let s = State::random(m, draws);
             let found = d.run(&format!("heights{}", leg + 1), &[&s.q]);
             let mut expected = real(robot, gait, &s.q, leg);
-            if gait.half_steps == HalfSteps::Mirrored {
+            if gait.phases.then == Then::Mirrored {
                 expected.extend(real(robot, gait, &exchanged(m, &s.q), 1 - leg));
             }
             let least = |list: &[f64]| list.iter().copied().fold(f64::INFINITY, f64::min);

@@ -56,17 +56,17 @@ pub fn of_mode(d: &Derived, s: &State, mode: Mode) {
 /// What an impact does, by q and the velocities before.
 pub fn of_impact(d: &Derived, s: &State, transition: Transition) {
     let name = transition.kernel("");
-    let (n, w) = (s.q.len(), before(d, s, transition));
+    let w = before(d, s, transition);
     let rows: &[&'static str] = match transition.leaves() {
         Some(_) => &["qd_plus", "impulse", "leaving", "landing"],
         None => &["qd_plus", "impulse", "landing"],
     };
     let values = |w: &[f64]| -> Vec<f64> {
-        let r = d.run(&name, &[&w[..n], &w[n..]]);
+        let r = impact(d, &name, w, &[]);
         rows.iter().flat_map(|v| r.get(v).to_vec()).collect()
     };
     let expected = differences(&w, values);
-    let now = d.run(&name, &[&w[..n], &w[n..]]);
+    let now = impact(d, &name, &w, &[]);
     assert_close(&name, &gradients(d, &name, &now), &expected, TOLERANCE * largest(&expected));
 }
 
@@ -116,10 +116,24 @@ fn second_derivatives_are(found: &Outputs, expected: &[f64], n: usize) {
     }
 }
 
-/// q and the velocities that are given to an impact.
+/// q and the velocities that are given to an impact, after a flight that of the mass centre first.
 fn before(d: &Derived, s: &State, transition: Transition) -> Vec<f64> {
-    let velocities = d.kernel(&transition.kernel("")).inputs[1].name;
-    [&s.q[..], if velocities == "qd" { &s.qd } else { &s.xd }].concat()
+    let components = if transition.leaves().is_some() { 0 } else { d.mechanism().positions() };
+    let centre = d.run("centre_of_mass", &[&s.x, &s.xd]);
+    [&s.q[..], &centre.get("velocity")[..components], &s.qd].concat()
+}
+
+/// A kernel of an impact from what [`before`] gives, and what else it takes.
+fn impact(d: &Derived, kernel: &str, before: &[f64], others: &[&[f64]]) -> Outputs {
+    let mut rest = before;
+    let mut inputs = Vec::new();
+    for input in &d.kernel(kernel).inputs[..d.kernel(kernel).inputs.len() - others.len()] {
+        let (own, others) = rest.split_at(input.symbols.len());
+        inputs.push(own);
+        rest = others;
+    }
+    inputs.extend(others);
+    d.run(kernel, &inputs)
 }
 
 /// ∂(Γ, F)/∂(q, q̇, Q̈) with β̈ eliminated by the balance row, against differences of `inverse`.
@@ -205,10 +219,7 @@ pub fn of_curvature(d: &Derived, s: &State, draws: &mut Draws, mode: Mode) {
     let w = [s.q.clone(), s.qd.clone(), s.qdd.clone()].concat();
     let of_forces = |w: &[f64], phi: &[f64]| {
         let (q, qd, qdd) = (&w[..n], &w[n..2 * n], &w[2 * n..]);
-        match mode {
-            Mode::Stance(_) => d.run(&kernel, &[q, qd, qdd, &nu, phi, &others]),
-            Mode::Flight => d.run(&kernel, &[q, qd, qdd, &nu, &others]),
-        }
+        d.run(&kernel, &[q, qd, qdd, &nu, phi, &others])
     };
     let run = |w: &[f64]| of_forces(w, &phi);
     let now = run(&w);
@@ -240,7 +251,7 @@ pub fn of_curvature(d: &Derived, s: &State, draws: &mut Draws, mode: Mode) {
         others_now.push(placement.get("p")[1]);
         vec![dot(&forces, &nu) + dot(&others_now, &others)]
     };
-    let without_reaction = of_forces(&w, &vec![0.0; positions]);
+    let without_reaction = of_forces(&w, &vec![0.0; phi.len()]);
     assert_close("gradient", without_reaction.get("gradient"), &differences(&w, value), TOLERANCE);
 }
 
@@ -253,14 +264,14 @@ pub fn of_impacts_curvature(d: &Derived, s: &State, draws: &mut Draws, transitio
     let [xi, outputs] = ["xi", "outputs"].map(|input| weights(d, &kernel, input, draws));
     let all = [&xi[..], &outputs].concat();
     let jacobian = |w: &[f64]| {
-        let r = d.run(&values, &[&w[..n], &w[n..]]);
+        let r = impact(d, &values, w, &[]);
         let own = gradients(d, &values, &r);
         let shared = own.len() < all.len() * columns;
         if shared { [&own[..], r.get("couple_w"), r.get("pitch_w")].concat() } else { own }
     };
     let expected = differences(&w, |w| transposed_product(&jacobian(w), &all));
-    let curvature = d.run(&kernel, &[&w[..n], &w[n..], &xi, &outputs]);
-    let mixed = curvature.get(if columns == 2 * n { "q_qd" } else { "q_xd" });
+    let curvature = impact(d, &kernel, &w, &[&xi, &outputs]);
+    let mixed = curvature.get(if columns == 2 * n { "q_qd" } else { "q_v" });
     let plus = jacobian(&w);
     for i in 0..n {
         for j in 0..columns {

@@ -1,7 +1,8 @@
 //! Random robots that could be built: positive masses, inertias that a rigid body can have.
 
 use piaffe_codegen::spec::{
-    Actuator, Axis, Gait, HalfSteps, Inertia, Joint, Leg, Limits, Link, Platform, Robot, Rotation, Segment, Unactuated,
+    Actuator, Axis, Gait, Inertia, Joint, Leg, Limits, Link, Phases, Platform, Robot, Rotation, Segment, Then,
+    Unactuated,
 };
 
 /// Numbers in [0, 1), handed out one after another.
@@ -174,13 +175,12 @@ pub fn specification(build: &Build, draws: &mut Draws) -> (Robot, Gait) {
         lateral: build.rotation == Rotation::Roll,
         rotation: build.rotation,
         unactuated,
-        half_steps: HalfSteps::Distinct,
+        phases: Phases::half_steps(Then::Repeat, [0.1, 1.0]),
         polynomial_order: 4,
         limits: Limits {
             friction: 1.0,
             min_vertical_force: 1.0,
             swing_clearance: 0.0,
-            half_step_duration: [0.1, 1.0],
             min_platform_height: 0.0,
             body_clearance: 0.0,
         },

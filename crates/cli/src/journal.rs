@@ -202,5 +202,5 @@ impl Journal for Folder {
 /// How long a point of this gait takes, relative to others: the solver's work grows like the cube of the variables.
 pub fn effort(gait: &dyn Gait) -> u64 {
     let d = gait.description();
-    (d.phases() * (2 * d.orientations() + d.prescribed() * (d.polynomial_order - 3) + 1)).pow(3) as u64
+    (d.phases.len() * (2 * d.orientations() + d.prescribed() * (d.polynomial_order - 3) + 1)).pow(3) as u64
 }

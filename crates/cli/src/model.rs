@@ -2,7 +2,7 @@
 
 use super::digits::decimal;
 use super::output;
-use piaffe_model::{Description, Gait, HalfSteps, Rotation};
+use piaffe_model::{Description, Gait, Mode, Phase, Rotation, Then};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 
@@ -30,11 +30,18 @@ fn coordinates(d: &Description) -> Vec<(String, String)> {
     list
 }
 
-fn half_steps(d: &Description) -> &'static str {
-    match d.half_steps {
-        HalfSteps::Mirrored => "the second half step mirrors the first",
-        HalfSteps::Distinct => "two different half steps",
-    }
+/// The phases in words.
+fn phases(d: &Description) -> String {
+    let one = |phase: &Phase| match phase.mode {
+        Mode::Stance(leg) => format!("on leg {}", leg + 1),
+        Mode::Flight => "in flight".into(),
+    };
+    let list = d.phases.iter().map(one).collect::<Vec<_>>().join(", ");
+    let then = match d.then {
+        Then::Mirrored => "then mirrored",
+        Then::Repeat => "then again",
+    };
+    format!("{list}, {then}")
 }
 
 fn as_json(d: &Description) -> Value {
@@ -65,7 +72,7 @@ fn as_json(d: &Description) -> Value {
         "coordinates": list.iter().map(|(name, what)| json!({ "name": name, "what": what })).collect::<Vec<_>>(),
         "unactuated": names(&mut std::iter::once(d.unactuated)),
         "prescribed": names(&mut (0..d.prescribed()).map(|k| d.prescribed_index(k))),
-        "half_steps": half_steps(d),
+        "phases": phases(d),
         "legs": legs.collect::<Vec<_>>(),
         "bodies": bodies.collect::<Vec<_>>(),
         "kernels": kernels.collect::<Vec<_>>(),
@@ -78,7 +85,7 @@ fn as_text(d: &Description) -> String {
         let _ = text.write_fmt(arguments);
         text.push('\n');
     };
-    line(format_args!("The {} of the {}: {}\n", d.gait, d.robot, half_steps(d)));
+    line(format_args!("The {} of the {}: {}\n", d.gait, d.robot, phases(d)));
     for (k, (name, what)) in coordinates(d).iter().enumerate() {
         let q = k.checked_sub(d.positions());
         let role = match q {

@@ -1,38 +1,37 @@
-//! A walk as the polynomials that a controller follows (eq. 15).
+//! A gait as the polynomials that a controller follows (eq. 15).
 
 use super::table::{coordinates, real_joints};
-use piaffe_model::HalfSteps;
 use piaffe_model::motion::{HalfStep, Motion};
-use piaffe_model::{Description, Gait};
+use piaffe_model::{Description, Gait, Then};
 use piaffe_optimizer::trajectory::Basis;
 use serde::Serialize;
 
-/// The prescribed coordinates over time, half step by half step.
+/// The prescribed coordinates over time, phase by phase.
 #[derive(Clone, Debug, Serialize)]
 pub struct Controller {
     pub gait: String,
     pub robot: String,
     pub fingerprint: String,
-    /// Whether the second half step is the first one with the legs exchanged.
+    /// Whether the second half of the phases is the first one with the legs exchanged.
     pub mirrored: bool,
     /// The real legs of both virtual legs.
     pub legs: [Vec<String>; 2],
     pub half_steps: Vec<Program>,
 }
 
-/// One half step.
+/// One phase.
 #[derive(Clone, Debug, Serialize)]
 pub struct Program {
     /// s.
     pub duration: f64,
-    /// The real legs in support.
+    /// The real legs in support; none in flight.
     pub stance: Vec<String>,
     pub coordinates: Vec<Polynomial>,
     /// What follows of itself: the coordinate that no actuator drives.
     pub unactuated: Free,
 }
 
-/// rad = Σ coefficients\[i\]·tⁱ, with t in s from the beginning of the half step.
+/// rad = Σ coefficients\[i\]·tⁱ, with t in s from the beginning of the phase.
 #[derive(Clone, Debug, Serialize)]
 pub struct Polynomial {
     pub name: String,
@@ -53,21 +52,20 @@ pub struct Free {
     pub final_rate: f64,
 }
 
-/// The program of a motion; for a mirrored gait with both half steps written out.
+/// The program of a motion; for a mirrored gait with both halves written out.
 pub fn controller(gait: &dyn Gait, motion: &Motion) -> Controller {
     let d = gait.description();
     let legs = [0, 1].map(|leg| d.legs[leg].members.iter().map(|m| m.name.to_string()).collect::<Vec<_>>());
-    let mirrored = d.half_steps == HalfSteps::Mirrored;
-    let half_steps =
-        [0, 1].map(|h| program(d, &motion.half_steps[h % motion.half_steps.len()], h == 1 && mirrored, &legs[h]));
-    Controller {
-        gait: d.gait.into(),
-        robot: d.robot.into(),
-        fingerprint: d.fingerprint(),
-        mirrored,
-        legs,
-        half_steps: half_steps.to_vec(),
-    }
+    let mirrored = d.then == Then::Mirrored;
+    let count = d.phases.len();
+    let of_phase = |h: usize| {
+        let (phase, exchanged) = (h % count, h >= count);
+        let mode = d.phases[phase].mode;
+        let stance = if exchanged { mode.exchanged() } else { mode }.stance();
+        program(d, &motion.half_steps[phase], exchanged, stance.map_or(&[], |leg| &legs[leg]))
+    };
+    let half_steps = (0..if mirrored { 2 * count } else { count }).map(of_phase).collect();
+    Controller { gait: d.gait.into(), robot: d.robot.into(), fingerprint: d.fingerprint(), mirrored, half_steps, legs }
 }
 
 fn program(d: &Description, h: &HalfStep, exchanged: bool, stance: &[String]) -> Program {

@@ -23,8 +23,8 @@ pub fn npz(walk: &Walk) -> std::io::Result<Vec<u8>> {
         archive.put(name, "<f8", &shape, &values)
     };
     put("t", &[], &|m| vec![m.time])?;
-    put("half_step", &[], &|m| vec![(m.half_step + 1) as f64])?;
-    put("stance", &[], &|m| vec![(m.stance + 1) as f64])?;
+    put("half_step", &[], &|m| vec![(m.phase + 1) as f64])?;
+    put("stance", &[], &|m| vec![m.mode.stance().map_or(0.0, |leg| (leg + 1) as f64)])?;
     for (k, name) in ["p", "pd", "pdd"].into_iter().enumerate() {
         put(name, &[3], &|m| m.platform[k].to_vec())?;
     }

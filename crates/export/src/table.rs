@@ -41,7 +41,7 @@ fn header(d: &Description) -> Vec<String> {
 }
 
 fn row(d: &Description, m: &Moment) -> Vec<f64> {
-    let mut row = vec![m.time, (m.half_step + 1) as f64, (m.stance + 1) as f64];
+    let mut row = vec![m.time, (m.phase + 1) as f64, m.mode.stance().map_or(0.0, |leg| (leg + 1) as f64)];
     row.extend(m.platform.concat());
     row.extend([&m.q[..], &m.qd, &m.qdd, &m.torque, &m.force].concat());
     row.extend(legs(d).flat_map(|(leg, member, _)| m.chain(d, leg, member).pop().unwrap_or_default()));

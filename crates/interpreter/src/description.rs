@@ -7,7 +7,7 @@ use piaffe_codegen::mechanism::{self, Mechanism, points};
 use piaffe_codegen::program::{Operations as Count, Program};
 use piaffe_codegen::spec;
 use piaffe_model::{
-    Body, Description, HalfSteps, Joint, Leg, Limits, Member, Operations, Point, Rotation, Spot, shape,
+    Body, Description, Joint, Leg, Limits, Member, Mode, Operations, Phase, Point, Rotation, Spot, Then, shape,
 };
 use std::borrow::Cow;
 
@@ -20,10 +20,6 @@ pub fn description(
     programs: &[(Program, Count)],
 ) -> Description {
     let shapes = Shapes::new(kernels);
-    let early = [0, 1].map(|leg| {
-        let name = format!("early{}", leg + 1);
-        kernels.iter().find(|kernel| kernel.name == name).map_or(0, |kernel| kernel.outputs[0].values.len())
-    });
     let mut description = Description {
         key: text(key),
         gait: text(&m.gait),
@@ -35,9 +31,10 @@ pub fn description(
             spec::Rotation::Pitch => Rotation::Pitch,
             spec::Rotation::Roll => Rotation::Roll,
         },
-        half_steps: match m.half_steps {
-            spec::HalfSteps::Mirrored => HalfSteps::Mirrored,
-            spec::HalfSteps::Distinct => HalfSteps::Distinct,
+        phases: each(&m.phases, phase),
+        then: match m.then {
+            spec::Then::Mirrored => Then::Mirrored,
+            spec::Then::Repeat => Then::Repeat,
         },
         bodies: each(&m.bodies, body),
         corners: each(&m.corners, spot),
@@ -45,7 +42,6 @@ pub fn description(
         legs: m.legs.each_ref().map(leg),
         unactuated: m.unactuated,
         polynomial_order: m.polynomial_order,
-        early,
         points: kept(points(m).iter().map(point).collect()),
         lowest: kept(lowest.to_vec()),
         limits: limits(&m.limits),
@@ -73,6 +69,14 @@ pub fn body(b: &mechanism::Body) -> Body {
         com: *com,
         inertia: *inertia,
     }
+}
+
+fn phase(p: &mechanism::Phase) -> Phase {
+    let mode = match p.mode {
+        mechanism::Mode::Stance(leg) => Mode::Stance(leg),
+        mechanism::Mode::Flight => Mode::Flight,
+    };
+    Phase { mode, duration: p.duration }
 }
 
 fn joint(j: &mechanism::Actuated) -> Joint {
@@ -120,7 +124,6 @@ fn limits(l: &spec::Limits) -> Limits {
         friction: l.friction,
         min_vertical_force: l.min_vertical_force,
         swing_clearance: l.swing_clearance,
-        half_step_duration: l.half_step_duration,
         min_platform_height: l.min_platform_height,
         body_clearance: l.body_clearance,
         real_legs: false,

@@ -3,14 +3,14 @@
 use super::description::description;
 use super::kept::{kept, text};
 use super::tape::Unrunnable;
-use super::twins::{Twins, tapes};
+use super::twins::{Twins, Which, tapes};
 use super::whole::Whole;
 use piaffe_codegen::dynamics::{kernels, lowest};
 use piaffe_codegen::mechanism::{Mechanism, levers};
 use piaffe_codegen::program::programs;
 use piaffe_codegen::spec;
 use piaffe_codegen::typeset::latex;
-use piaffe_model::{Description, Gait, Lever, Specification, whole};
+use piaffe_model::{Description, Gait, Lever, Mode, Specification, whole};
 use std::sync::OnceLock;
 
 /// A gait of a specification, derived when it was loaded: what a build would make of it, with the same bits.
@@ -67,7 +67,7 @@ fn locked(robot: &spec::Robot, gait: &spec::Gait) -> Result<spec::Robot, Unrunna
 
 /// A structure with the tapes of all kernels, and the trait's methods that evaluate them. An input is `numbers` or a `number`.
 macro_rules! gait {
-    ($($name:ident $([$of:ident])? ($($input:ident: $kind:ident),*);)*) => {
+    ($($name:ident $([$of:ident: $ty:ty])? ($($input:ident: $kind:ident),*);)*) => {
         struct Kernels {
             $($name: Twins,)*
         }
@@ -106,8 +106,8 @@ macro_rules! gait {
                 whole.map(|whole| whole as &dyn whole::Whole)
             }
 
-            $(fn $name(&self, $($of: usize,)? $($input: gait!(type $kind),)* out: &mut [f64]) {
-                let which = 0 $(+ $of)?;
+            $(fn $name(&self, $($of: $ty,)? $($input: gait!(type $kind),)* out: &mut [f64]) {
+                let which = 0 $(+ $of.which())?;
                 self.kernels.$name.evaluate(which, &[$(gait!(slice $kind $input)),*], out);
             })*
         }
@@ -124,30 +124,34 @@ gait! {
     inertia_and_bias(q: numbers, qd: numbers);
     energy(x: numbers, xd: numbers);
     centre_of_mass(x: numbers, xd: numbers);
-    foot[leg](x: numbers);
-    foot_jacobian[leg](q: numbers);
-    foot_bias[leg](q: numbers, qd: numbers);
-    angular_momentum[leg](x: numbers, xd: numbers);
-    platform_velocity[leg](q: numbers, qd: numbers);
-    momentum_terms[leg](q: numbers, qd: numbers);
-    reduced[leg](q: numbers, qd: numbers);
-    forward[leg](q: numbers, qd: numbers, gamma: numbers);
-    inverse[leg](q: numbers, qd: numbers, actuated_dd: numbers);
-    momentum[leg](q: numbers, qd: numbers);
-    inverse_jacobian[leg](q: numbers, qd: numbers, actuated_dd: numbers);
-    placement[leg](q: numbers);
-    heights[leg](q: numbers);
-    swing_velocity[leg](q: numbers, qd: numbers);
-    early[leg](actuated: numbers, actuated_d: numbers);
-    late[leg](early: numbers, beta: number);
-    late_gradient[leg](early: numbers, beta: number);
-    impact[leg](q: numbers, xd: numbers);
-    touchdown[leg](q: numbers, qd: numbers);
-    curvature[leg](q: numbers, qd: numbers, qdd: numbers, n: numbers, phi: numbers, others: numbers);
-    heights_curvature[leg](q: numbers, weights: numbers);
-    touchdown_curvature[leg](q: numbers, qd: numbers, xi: numbers, outputs: numbers);
-    sharing[leg](q: numbers, qd: numbers, qdd: numbers);
-    sharing_curvature[leg](q: numbers, qd: numbers, qdd: numbers, weights: numbers);
+    foot[leg: usize](x: numbers);
+    foot_jacobian[leg: usize](q: numbers);
+    foot_bias[leg: usize](q: numbers, qd: numbers);
+    angular_momentum[leg: usize](x: numbers, xd: numbers);
+    platform_velocity[mode: Mode](q: numbers, qd: numbers);
+    momentum_terms[mode: Mode](q: numbers, qd: numbers);
+    reduced[mode: Mode](q: numbers, qd: numbers);
+    forward[mode: Mode](q: numbers, qd: numbers, gamma: numbers);
+    inverse[mode: Mode](q: numbers, qd: numbers, actuated_dd: numbers);
+    momentum[mode: Mode](q: numbers, qd: numbers);
+    inverse_jacobian[mode: Mode](q: numbers, qd: numbers, actuated_dd: numbers);
+    placement[mode: Mode](q: numbers);
+    heights[mode: Mode](q: numbers);
+    swing_velocity[mode: Mode](q: numbers, qd: numbers);
+    early[mode: Mode](actuated: numbers, actuated_d: numbers);
+    late[mode: Mode](early: numbers, beta: number);
+    late_gradient[mode: Mode](early: numbers, beta: number);
+    impact[leg: usize](q: numbers, xd: numbers);
+    touchdown[leg: usize](q: numbers, qd: numbers);
+    curvature[mode: Mode](q: numbers, qd: numbers, qdd: numbers, n: numbers, phi: numbers, others: numbers);
+    heights_curvature[mode: Mode](q: numbers, weights: numbers);
+    touchdown_curvature[leg: usize](q: numbers, qd: numbers, xi: numbers, outputs: numbers);
+    landing[leg: usize](q: numbers, v: numbers, qd: numbers);
+    landing_curvature[leg: usize](q: numbers, v: numbers, qd: numbers, xi: numbers, outputs: numbers);
+    takeoff[leg: usize](q: numbers, qd: numbers, qdd: numbers);
+    takeoff_curvature[leg: usize](q: numbers, qd: numbers, qdd: numbers, weights: numbers);
+    sharing[mode: Mode](q: numbers, qd: numbers, qdd: numbers);
+    sharing_curvature[mode: Mode](q: numbers, qd: numbers, qdd: numbers, weights: numbers);
     impact_both(q: numbers, xd: numbers);
 }
 

@@ -1,6 +1,7 @@
 //! Where everything stands among the kernels' numbers.
 
 use piaffe_codegen::dynamics::{Block, Kernel};
+use piaffe_codegen::mechanism::Mode;
 use piaffe_model::shape;
 use std::collections::BTreeMap;
 
@@ -13,10 +14,15 @@ impl Shapes {
     pub fn new(kernels: &[Kernel]) -> Shapes {
         let mut shapes = Shapes::default();
         for kernel in kernels {
-            let path = base_name(&kernel.name).0;
+            let path = match kernel.mode {
+                Some(Mode::Stance(_)) => format!("stance.{}", kernel.base()),
+                Some(Mode::Flight) => format!("flight.{}", kernel.base()),
+                None => kernel.base().into(),
+            };
             let outputs: Vec<Block> = kernel.outputs.iter().map(|o| Block { name: o.name, shape: o.shape }).collect();
-            if outputs.len() > 1 || kernel.inputs.iter().any(|input| !input.blocks.is_empty()) {
-                shapes.insert(path, &outputs);
+            let several = outputs.len() > 1 || kernel.inputs.iter().any(|input| !input.blocks.is_empty());
+            if several || kernel.base() == "early" {
+                shapes.insert(&path, &outputs);
             }
             kernel.inputs.iter().for_each(|input| shapes.insert(&format!("{path}.{}", input.name), &input.blocks));
         }
@@ -27,7 +33,11 @@ impl Shapes {
         let mut at = 0;
         for block in blocks {
             let (rows, columns) = block.shape.size();
-            self.0.insert(format!("{path}.{}", block.name), shape::Block::new(at, rows, columns));
+            let place = self.0.entry(format!("{path}.{}", block.name)).or_insert(shape::Block::NONE);
+            // Of twins the longer one counts: what is known early can be more for one leg than for the other.
+            if place.len() <= rows * columns {
+                *place = shape::Block::new(at, rows, columns);
+            }
             at += block.count();
         }
     }
@@ -36,10 +46,4 @@ impl Shapes {
     pub fn block(&self, name: &str) -> shape::Block {
         self.0.get(name).copied().unwrap_or(shape::Block::NONE)
     }
-}
-
-/// `inverse_jacobian2` → (`inverse_jacobian`, Some(1)): kernels of a leg end in the leg's number.
-pub fn base_name(name: &str) -> (&str, Option<usize>) {
-    let base = name.trim_end_matches(|c: char| c.is_ascii_digit());
-    (base, name[base.len()..].parse::<usize>().ok().and_then(|number| number.checked_sub(1)))
 }

@@ -1,14 +1,35 @@
-//! Kernels that compute the same for either leg, under one name.
+//! Kernels that compute the same for either leg or in several modes, under one name.
 
-use super::shapes::base_name;
 use super::tape::{Tape, Unrunnable};
 use piaffe_codegen::dynamics::Kernel;
+use piaffe_codegen::mechanism;
 use piaffe_codegen::program::Program;
+use piaffe_model::Mode;
 use std::collections::BTreeMap;
 
-/// The tapes of a kernel for leg 1 and 2, or the one that is of neither.
+/// The tapes of a kernel for leg 1 and 2 or stance on these, and for flight; or the one that is of none, as the first.
 #[derive(Clone, Debug, Default)]
-pub struct Twins([Option<Tape>; 2]);
+pub struct Twins([Option<Tape>; 3]);
+
+/// Which of the tapes is that of a leg or a mode.
+pub trait Which {
+    fn which(self) -> usize;
+}
+
+impl Which for usize {
+    fn which(self) -> usize {
+        self
+    }
+}
+
+impl Which for Mode {
+    fn which(self) -> usize {
+        match self {
+            Mode::Stance(leg) => leg,
+            Mode::Flight => 2,
+        }
+    }
+}
 
 impl Twins {
     /// Of what there is no kernel for there are no numbers: NaN.
@@ -20,7 +41,7 @@ impl Twins {
     }
 }
 
-/// The tapes of all kernels, by their names without the leg's number.
+/// The tapes of all kernels, by what they compute, whichever leg or mode they are of.
 ///
 /// # Errors
 /// If there can be none of a kernel.
@@ -30,8 +51,11 @@ pub fn tapes<'p>(
 ) -> Result<BTreeMap<String, Twins>, Unrunnable> {
     let mut tapes: BTreeMap<String, Twins> = BTreeMap::new();
     for (kernel, program) in kernels.iter().zip(programs) {
-        let (base, leg) = base_name(&kernel.name);
-        if let Some(place) = tapes.entry(base.into()).or_default().0.get_mut(leg.unwrap_or(0)) {
+        let which = match kernel.mode {
+            Some(mechanism::Mode::Flight) => Mode::Flight.which(),
+            _ => usize::from(kernel.is_of_leg() && !kernel.name.ends_with('1')),
+        };
+        if let Some(place) = tapes.entry(kernel.base().into()).or_default().0.get_mut(which) {
             *place = Some(Tape::new(kernel, program)?);
         }
     }

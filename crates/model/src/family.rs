@@ -3,7 +3,7 @@
 //! A build with parameters generates a [`Family`] per gait. A [`Parametric`] gait of it is a gait like any other, of
 //! the robot with the given values, and can tell how what it computes depends on them.
 
-use super::{Body, Description, Gait, HalfSteps, Leg, Rotation};
+use super::{Body, Description, Gait, Leg, Mode, Rotation, Then};
 use crate::units::Units;
 use nalgebra::Matrix3;
 
@@ -99,7 +99,7 @@ pub trait Parametric: Gait + Send {
     /// Gradient of the weighted sum of an instant's outputs; weights as for [`Gait::curvature`].
     fn sensitivity(
         &self,
-        leg: usize,
+        mode: Mode,
         q: &[f64],
         qd: &[f64],
         qdd: &[f64],
@@ -109,9 +109,31 @@ pub trait Parametric: Gait + Send {
         out: &mut [f64],
     );
     /// Gradient of the weighted sum of f1, f2 and c (eq. 8, 9).
-    fn terms_sensitivity(&self, leg: usize, q: &[f64], qd: &[f64], weights: &[f64], out: &mut [f64]);
+    fn terms_sensitivity(&self, mode: Mode, q: &[f64], qd: &[f64], weights: &[f64], out: &mut [f64]);
     /// Gradient of the weighted sum of a touchdown's results; weights as for [`Gait::touchdown_curvature`].
-    fn touchdown_sensitivity(&self, leg: usize, q: &[f64], qd: &[f64], xi: &[f64], outputs: &[f64], out: &mut [f64]);
+    fn touchdown_sensitivity(&self, leg: usize, q: &[f64], qd: &[f64], xi: &[f64], outputs: &[f64], out: &mut [f64]) {
+        let _ = (leg, q, qd, xi, outputs);
+        out.fill(f64::NAN);
+    }
+    /// The same of a landing; weights as for [`Gait::landing_curvature`].
+    fn landing_sensitivity(
+        &self,
+        leg: usize,
+        q: &[f64],
+        v: &[f64],
+        qd: &[f64],
+        xi: &[f64],
+        outputs: &[f64],
+        out: &mut [f64],
+    ) {
+        let _ = (leg, q, v, qd, xi, outputs);
+        out.fill(f64::NAN);
+    }
+    /// The same of a take-off; weights as for [`Gait::takeoff_curvature`].
+    fn takeoff_sensitivity(&self, leg: usize, q: &[f64], qd: &[f64], qdd: &[f64], weights: &[f64], out: &mut [f64]) {
+        let _ = (leg, q, qd, qdd, weights);
+        out.fill(f64::NAN);
+    }
 
     /// The gradient in the parameters from one in the lumped parameters.
     fn pull_back(&self, by_lump: &[f64]) -> Vec<f64> {
@@ -183,7 +205,7 @@ impl Description {
     /// Where the half steps mirror each other, so must the legs: across the sagittal plane if the platform
     /// rolls, else as seen from the side.
     fn check_mirror(&self) -> Result<(), Unfit> {
-        if self.half_steps == HalfSteps::Distinct {
+        if self.then == Then::Repeat {
             return Ok(());
         }
         let bodies = |leg: &Leg| {

@@ -34,7 +34,10 @@ pub struct Description {
     /// Whether p has a z.
     pub lateral: bool,
     pub rotation: Rotation,
-    pub half_steps: HalfSteps,
+    /// What the gait does, in the order in which it does it.
+    pub phases: Cow<'static, [Phase]>,
+    /// What follows the last of them.
+    pub then: Then,
     /// Parents precede children; body 0 is the platform.
     pub bodies: Cow<'static, [Body]>,
     /// Of what the platform fills.
@@ -45,8 +48,6 @@ pub struct Description {
     pub unactuated: usize,
     /// Order of the joint polynomials (eq. 15).
     pub polynomial_order: usize,
-    /// Length of the early values of each stance leg.
-    pub early: [usize; 2],
     /// What must stay above the ground.
     pub points: &'static [Point],
     /// Which of these can be the lowest: whose heights [`Gait::heights`] gives.
@@ -71,13 +72,74 @@ pub enum Rotation {
     Roll,
 }
 
-/// Whether one half step defines the gait.
+/// A contact mode: what stands on the ground. The unit for which dynamics are derived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum HalfSteps {
-    /// The legs swap roles after each half step.
+pub enum Mode {
+    /// Single support on the foot of this leg (0 or 1).
+    Stance(usize),
+    /// Nothing stands: the mass centre flies like a stone, and nothing turns the robot about it.
+    Flight,
+}
+
+impl Mode {
+    /// The leg that stands.
+    pub fn stance(self) -> Option<usize> {
+        match self {
+            Mode::Stance(leg) => Some(leg),
+            Mode::Flight => None,
+        }
+    }
+
+    /// The same when the legs have exchanged roles.
+    pub fn exchanged(self) -> Mode {
+        match self {
+            Mode::Stance(leg) => Mode::Stance(1 - leg),
+            Mode::Flight => Mode::Flight,
+        }
+    }
+
+    /// The legs whose feet are in the air, in the order in which kernels give them.
+    pub fn swinging(self) -> impl Iterator<Item = usize> + Clone {
+        (0..2).filter(move |leg| self != Mode::Stance(*leg))
+    }
+}
+
+/// A mode for a while.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Phase {
+    pub mode: Mode,
+    /// Shortest and longest, s.
+    pub duration: [f64; 2],
+}
+
+/// What follows the last phase of a gait.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Then {
+    /// The same with the legs' roles exchanged: the phases are half a cycle.
     Mirrored,
-    /// Two different half steps, on leg 1 and on leg 2.
-    Distinct,
+    /// The first phase again: they are the whole cycle.
+    Repeat,
+}
+
+/// What happens between two phases. Legs are called as in the phase before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Transition {
+    /// The foot of this leg lands in a passive impact (eq. 12), and the other one leaves.
+    Touchdown(usize),
+    /// The foot of this leg lands out of flight, likewise.
+    Landing(usize),
+    /// The foot of this leg, at rest so far, leaves into flight: all velocities stay.
+    TakeOff(usize),
+}
+
+impl Transition {
+    /// The leg whose foot lands.
+    pub fn lands(self) -> Option<usize> {
+        match self {
+            Transition::Touchdown(leg) | Transition::Landing(leg) => Some(leg),
+            Transition::TakeOff(_) => None,
+        }
+    }
 }
 
 /// A rigid body and the joint that carries it.
@@ -195,8 +257,6 @@ pub struct Limits {
     pub min_vertical_force: f64,
     /// Height of the swing parabola, m.
     pub swing_clearance: f64,
-    /// s.
-    pub half_step_duration: [f64; 2],
     /// Of the platform's mass centre above the ground, m.
     pub min_platform_height: f64,
     /// Of everything but feet above the ground, m.
@@ -278,11 +338,39 @@ impl Description {
         costs.energy / self.weight()
     }
 
-    /// Number of half steps that define the gait.
-    pub fn phases(&self) -> usize {
-        match self.half_steps {
-            HalfSteps::Mirrored => 1,
-            HalfSteps::Distinct => 2,
+    /// Whether some phase has this mode.
+    pub fn has(&self, mode: Mode) -> bool {
+        self.phases.iter().any(|phase| phase.mode == mode)
+    }
+
+    /// What ends phase `k`.
+    pub fn transition(&self, k: usize) -> Transition {
+        let next = match self.phases[(k + 1) % self.phases.len()].mode {
+            mode if self.exchanges(k) => mode.exchanged(),
+            mode => mode,
+        };
+        match (self.phases[k].mode, next) {
+            (Mode::Stance(leg), Mode::Flight) => Transition::TakeOff(leg),
+            (Mode::Stance(from), to) => Transition::Touchdown(to.stance().unwrap_or(1 - from)),
+            (Mode::Flight, to) => Transition::Landing(to.stance().unwrap_or_default()),
+        }
+    }
+
+    /// Whether the legs exchange roles after phase `k`.
+    pub fn exchanges(&self, k: usize) -> bool {
+        self.then == Then::Mirrored && k + 1 == self.phases.len()
+    }
+
+    /// Where the coordinate `index` of q in the phase after `k` comes from: index and sign.
+    pub fn renamed(&self, k: usize, index: usize) -> (usize, f64) {
+        if self.exchanges(k) { self.swapped(index) } else { (index, 1.0) }
+    }
+
+    /// Shapes of the kernels of a mode.
+    pub fn shape(&self, mode: Mode) -> &'static shape::ModeShapes {
+        match mode {
+            Mode::Stance(_) => &self.shapes.stance,
+            Mode::Flight => &self.shapes.flight,
         }
     }
 
@@ -326,7 +414,9 @@ pub fn hash(text: &str) -> u64 {
     text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
-/// Generated dynamics of one gait. `leg` is 0 or 1: the leg in support, or the leg named.
+/// Generated dynamics of one gait. `leg` is 0 or 1: the leg named. In flight positions are from the mass centre, which falls: there is
+/// neither weight nor reaction, and σ̇ = 0. Of modes and transitions that a gait does
+/// not have there are no numbers: NaN.
 #[allow(clippy::too_many_arguments)]
 pub trait Gait: Sync {
     fn description(&self) -> &Description;
@@ -365,43 +455,46 @@ pub trait Gait: Sync {
     fn angular_momentum(&self, leg: usize, x: &[f64], xd: &[f64], out: &mut [f64]);
 
     /// ṗ with the stance foot at rest.
-    fn platform_velocity(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]);
+    fn platform_velocity(&self, mode: Mode, q: &[f64], qd: &[f64], out: &mut [f64]);
     /// f1, f2, σ, c, σ̇ (eq. 8, 9).
-    fn momentum_terms(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]);
+    fn momentum_terms(&self, mode: Mode, q: &[f64], qd: &[f64], out: &mut [f64]);
     /// Aq, Hq (eq. 6).
-    fn reduced(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]);
+    fn reduced(&self, mode: Mode, q: &[f64], qd: &[f64], out: &mut [f64]);
     /// Ẍ, F from the independent torques.
-    fn forward(&self, leg: usize, q: &[f64], qd: &[f64], gamma: &[f64], out: &mut [f64]);
+    fn forward(&self, mode: Mode, q: &[f64], qd: &[f64], gamma: &[f64], out: &mut [f64]);
     /// Ẍ, Γ (all joints), F from Q̈.
-    fn inverse(&self, leg: usize, q: &[f64], qd: &[f64], actuated_dd: &[f64], out: &mut [f64]);
+    fn inverse(&self, mode: Mode, q: &[f64], qd: &[f64], actuated_dd: &[f64], out: &mut [f64]);
     /// σ, ∂σ/∂(q, q̇).
-    fn momentum(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]);
+    fn momentum(&self, mode: Mode, q: &[f64], qd: &[f64], out: &mut [f64]);
     /// β̈, Γ, F, ∂(Γ, F, balance)/∂(q, q̇, q̈).
-    fn inverse_jacobian(&self, leg: usize, q: &[f64], qd: &[f64], actuated_dd: &[f64], out: &mut [f64]);
+    fn inverse_jacobian(&self, mode: Mode, q: &[f64], qd: &[f64], actuated_dd: &[f64], out: &mut [f64]);
     /// p, swing foot, ∂p/∂q, ∂swing/∂q; from the stance foot.
-    fn placement(&self, leg: usize, q: &[f64], out: &mut [f64]);
+    fn placement(&self, mode: Mode, q: &[f64], out: &mut [f64]);
     /// Heights over the ground of the description's `lowest` points, ∂/∂q.
-    fn heights(&self, leg: usize, q: &[f64], out: &mut [f64]);
+    fn heights(&self, mode: Mode, q: &[f64], out: &mut [f64]);
     /// Swing foot's velocity, its Jacobian in (q, q̇).
-    fn swing_velocity(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]);
+    fn swing_velocity(&self, mode: Mode, q: &[f64], qd: &[f64], out: &mut [f64]);
 
     /// What eq. 8 and 9 need of (Q, Q̇) alone.
-    fn early(&self, leg: usize, actuated: &[f64], actuated_d: &[f64], out: &mut [f64]);
+    fn early(&self, mode: Mode, actuated: &[f64], actuated_d: &[f64], out: &mut [f64]);
     /// f1, f2, σ̇, then their derivatives in β.
-    fn late(&self, leg: usize, early: &[f64], beta: f64, out: &mut [f64]);
+    fn late(&self, mode: Mode, early: &[f64], beta: f64, out: &mut [f64]);
     /// ∂f1/∂Q, ∂f2/∂Q, ∂f2/∂Q̇, ∂σ̇/∂Q.
-    fn late_gradient(&self, leg: usize, early: &[f64], beta: f64, out: &mut [f64]);
+    fn late_gradient(&self, mode: Mode, early: &[f64], beta: f64, out: &mut [f64]);
 
     /// Impact on the foot of `leg` (eq. 12): Ẋ⁺, impulse.
     fn impact(&self, leg: usize, q: &[f64], xd: &[f64], out: &mut [f64]);
     /// Impact on the foot of `leg` after support on the other: q̇⁺, impulse, leaving, landing, Jacobian in (q, q̇⁻);
     /// where the platform rolls also couple, pitch, and their Jacobian.
-    fn touchdown(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]);
+    fn touchdown(&self, leg: usize, q: &[f64], qd: &[f64], out: &mut [f64]) {
+        let _ = (leg, q, qd);
+        out.fill(f64::NAN);
+    }
     /// Gradient and second derivatives (q·q, q·q̇, q·q̈, q̇·q̇) of the weighted sum of an instant's outputs;
     /// `n` weighs the torque of every joint, then the balance of eq. 10.
     fn curvature(
         &self,
-        leg: usize,
+        mode: Mode,
         q: &[f64],
         qd: &[f64],
         qdd: &[f64],
@@ -411,18 +504,52 @@ pub trait Gait: Sync {
         out: &mut [f64],
     );
     /// Gradient in q and second derivatives (q·q) of the weighted sum of [`Gait::heights`].
-    fn heights_curvature(&self, leg: usize, q: &[f64], weights: &[f64], out: &mut [f64]);
+    fn heights_curvature(&self, mode: Mode, q: &[f64], weights: &[f64], out: &mut [f64]);
     /// Second derivatives (q·q, q·q̇⁻, q·q̇⁺) of a touchdown's weighted results.
-    fn touchdown_curvature(&self, leg: usize, q: &[f64], qd: &[f64], xi: &[f64], outputs: &[f64], out: &mut [f64]);
-    /// Where the platform rolls: moment (y, z) about the stance foot, ∂foot/∂q of its leg, ∂(these)/∂(q, q̇, q̈). Elsewhere
-    /// the real legs share equally: not numbers.
-    fn sharing(&self, leg: usize, q: &[f64], qd: &[f64], qdd: &[f64], out: &mut [f64]) {
+    fn touchdown_curvature(&self, leg: usize, q: &[f64], qd: &[f64], xi: &[f64], outputs: &[f64], out: &mut [f64]) {
+        let _ = (leg, q, qd, xi, outputs);
+        out.fill(f64::NAN);
+    }
+    /// Impact on the foot of `leg` after a flight: q̇⁺, impulse, landing, Jacobian in (q, v⁻, q̇⁻), v the
+    /// mass centre's velocity.
+    fn landing(&self, leg: usize, q: &[f64], v: &[f64], qd: &[f64], out: &mut [f64]) {
+        let _ = (leg, q, v, qd);
+        out.fill(f64::NAN);
+    }
+    /// Second derivatives (q·q, q·(v⁻, q̇⁻), q·q̇⁺) of a landing's weighted results.
+    fn landing_curvature(
+        &self,
+        leg: usize,
+        q: &[f64],
+        v: &[f64],
+        qd: &[f64],
+        xi: &[f64],
+        outputs: &[f64],
+        out: &mut [f64],
+    ) {
+        let _ = (leg, q, v, qd, xi, outputs);
+        out.fill(f64::NAN);
+    }
+    /// What begins when the foot of `leg` leaves the ground at rest: mass centre from it, its velocity, the foot's vertical
+    /// acceleration, ∂/∂(q, q̇, q̈).
+    fn takeoff(&self, leg: usize, q: &[f64], qd: &[f64], qdd: &[f64], out: &mut [f64]) {
         let _ = (leg, q, qd, qdd);
         out.fill(f64::NAN);
     }
-    /// Gradient and second derivatives, as of [`Gait::curvature`], of the weighted sum of what [`Gait::sharing`] gives.
-    fn sharing_curvature(&self, leg: usize, q: &[f64], qd: &[f64], qdd: &[f64], weights: &[f64], out: &mut [f64]) {
+    /// Gradient and second derivatives, as of [`Gait::curvature`], of a take-off's weighted results.
+    fn takeoff_curvature(&self, leg: usize, q: &[f64], qd: &[f64], qdd: &[f64], weights: &[f64], out: &mut [f64]) {
         let _ = (leg, q, qd, qdd, weights);
+        out.fill(f64::NAN);
+    }
+    /// Where the platform rolls: moment (y, z) about the stance foot, ∂foot/∂q of its leg, ∂(these)/∂(q, q̇, q̈). Elsewhere
+    /// the real legs share equally: not numbers.
+    fn sharing(&self, mode: Mode, q: &[f64], qd: &[f64], qdd: &[f64], out: &mut [f64]) {
+        let _ = (mode, q, qd, qdd);
+        out.fill(f64::NAN);
+    }
+    /// Gradient and second derivatives, as of [`Gait::curvature`], of the weighted sum of what [`Gait::sharing`] gives.
+    fn sharing_curvature(&self, mode: Mode, q: &[f64], qd: &[f64], qdd: &[f64], weights: &[f64], out: &mut [f64]) {
+        let _ = (mode, q, qd, qdd, weights);
         out.fill(f64::NAN);
     }
     /// Both feet stay (eq. 11): Ẋ⁺, impulses on foot 1 and 2, pivots, scale.

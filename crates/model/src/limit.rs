@@ -29,6 +29,7 @@ limits! {
     Friction = "friction",
     FrictionOfFoot = "friction of …",
     Clearance = "swing clearance",
+    ClearanceOfFoot = "swing clearance of …",
     PlatformHeight = "platform height",
     Height = "height of …",
     ShortestHalfStep = "shortest half step",

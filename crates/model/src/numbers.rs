@@ -23,7 +23,7 @@ impl Description {
     /// All numbers: first what is measured (gravity; of each body offset, mass, mass centre and inertia; of each joint the
     /// rotor's inertia; of each leg the foot, and of its members their bodies, feet and spots; the platform's corners), then
     /// what limits (of each joint its range, greatest torque, unloaded and loaded speed; friction, vertical force, clearance,
-    /// shortest and longest half step, platform height, body clearance).
+    /// shortest and longest duration of each phase, platform height, body clearance).
     pub fn numbers(&self) -> Vec<f64> {
         let mut numbers = Vec::new();
         self.clone().for_each_number(&mut |number| numbers.push(*number));
@@ -52,7 +52,7 @@ impl Description {
         visit(&mut l.friction);
         visit(&mut l.min_vertical_force);
         visit(&mut l.swing_clearance);
-        l.half_step_duration.iter_mut().for_each(&mut *visit);
+        self.phases.to_mut().iter_mut().flat_map(|phase| &mut phase.duration).for_each(&mut *visit);
         visit(&mut l.min_platform_height);
         visit(&mut l.body_clearance);
     }

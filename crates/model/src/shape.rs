@@ -132,9 +132,10 @@ macro_rules! all {
         impl $name {
             pub const NONE: $name = $name { $($field: $crate::shape::$kernel::NONE,)* };
 
-            /// From where each block stands, by its name behind `path`, which is empty or ends in a dot.
+            /// From where each block stands, by its name behind `path`, if that is not empty.
             pub fn named(path: &str, block: &dyn Fn(&str) -> $crate::shape::Block) -> $name {
-                $(let $field = $crate::shape::$kernel::named(&format!("{path}{}", stringify!($field)), block);)*
+                let dot = if path.is_empty() { "" } else { "." };
+                $(let $field = $crate::shape::$kernel::named(&format!("{path}{dot}{}", stringify!($field)), block);)*
                 $name { $($field,)* }
             }
         }
@@ -143,11 +144,8 @@ macro_rules! all {
 pub(crate) use all;
 
 all! {
-    /// Shapes of the kernels of a gait that give more than one thing. What each is, the kernels themselves document.
-    Shapes {
-        inertia_and_bias: InertiaAndBias,
-        energy: Energy,
-        centre_of_mass: CentreOfMass,
+    /// Shapes of the kernels of a mode. What each is, the kernels themselves document.
+    ModeShapes {
         momentum_terms: MomentumTerms,
         reduced: Reduced,
         forward: Forward,
@@ -158,14 +156,30 @@ all! {
         heights: Heights,
         heights_curvature: HeightsCurvature,
         swing_velocity: SwingVelocity,
+        early: Early,
         late: Late,
         late_gradient: LateGradient,
-        impact: Impact,
-        touchdown: Touchdown,
         curvature: Curvature,
-        touchdown_curvature: TouchdownCurvature,
         sharing: Sharing,
         sharing_curvature: SharingCurvature,
+    }
+}
+
+all! {
+    /// Shapes of the kernels of a gait: those of its modes, and of its transitions. Of stance on either leg they are the same.
+    Shapes {
+        stance: ModeShapes,
+        flight: ModeShapes,
+        inertia_and_bias: InertiaAndBias,
+        energy: Energy,
+        centre_of_mass: CentreOfMass,
+        impact: Impact,
+        touchdown: Touchdown,
+        touchdown_curvature: TouchdownCurvature,
+        landing: Landing,
+        landing_curvature: LandingCurvature,
+        takeoff: Takeoff,
+        takeoff_curvature: TakeoffCurvature,
         impact_both: ImpactBoth,
     }
 }
@@ -185,6 +199,7 @@ shapes! {
     Heights { heights, heights_q }
     HeightsCurvature { gradient, q_q }
     SwingVelocity { v, v_w }
+    Early { early }
     Late { value, by_beta }
     LateGradient { f1_q, f2_q, f2_qd, moment_q }
     Impact { xd_plus, impulse }
@@ -203,6 +218,13 @@ shapes! {
     Sharing { moment, levers, moment_w, levers_w }
     SharingCurvature { gradient, q_q, q_qd, q_qdd, qd_qd; weights: SharingCurvatureWeights }
     SharingCurvatureWeights { moment, levers }
+    Landing { qd_plus, impulse, landing, qd_plus_w, impulse_w, landing_w }
+    LandingCurvature { q_q, q_v, q_plus; outputs: LandingCurvatureOutputs }
+    /// What a landing gives beside q̇⁺.
+    LandingCurvatureOutputs { impulse, landing }
+    Takeoff { r, v, lift, r_q, v_w, lift_w }
+    TakeoffCurvature { gradient, q_q, q_qd, q_qdd, qd_qd; weights: TakeoffCurvatureWeights }
+    TakeoffCurvatureWeights { r, v, lift }
     ImpactBoth { xd_plus, impulse1, impulse2, pivots, scale }
     /// Of a whole robot.
     Feet { d, jacobian }

@@ -2,7 +2,7 @@
 
 use crate::constraints::sharing::obstacle;
 use piaffe_model::whole::Whole;
-use piaffe_model::{Description, Gait, Lever, Specification};
+use piaffe_model::{Description, Gait, Lever, Mode, Specification};
 
 /// The generated dynamics of a gait under another description.
 pub struct Altered<'a> {
@@ -40,8 +40,9 @@ impl<'a> Altered<'a> {
 /// What the generated code depends on, as text.
 fn folded(d: &Description) -> String {
     let rotors: Vec<f64> = d.joints.iter().map(|j| j.gear * j.gear * j.rotor_inertia).collect();
-    let frame = (d.gravity, d.lateral, d.rotation, d.half_steps, d.unactuated, d.early);
-    format!("{frame:?} {:?} {:?} {:?} {rotors:?}", d.bodies, d.legs, d.corners)
+    let frame = (d.gravity, d.lateral, d.rotation, d.then, d.unactuated);
+    let modes: Vec<_> = d.phases.iter().map(|phase| phase.mode).collect();
+    format!("{frame:?} {modes:?} {:?} {:?} {:?} {rotors:?}", d.bodies, d.legs, d.corners)
 }
 
 macro_rules! delegate {
@@ -86,26 +87,30 @@ impl Gait for Altered<'_> {
         foot_jacobian(leg: usize, q: &[f64]);
         foot_bias(leg: usize, q: &[f64], qd: &[f64]);
         angular_momentum(leg: usize, x: &[f64], xd: &[f64]);
-        platform_velocity(leg: usize, q: &[f64], qd: &[f64]);
-        momentum_terms(leg: usize, q: &[f64], qd: &[f64]);
-        reduced(leg: usize, q: &[f64], qd: &[f64]);
-        forward(leg: usize, q: &[f64], qd: &[f64], gamma: &[f64]);
-        inverse(leg: usize, q: &[f64], qd: &[f64], actuated_dd: &[f64]);
-        momentum(leg: usize, q: &[f64], qd: &[f64]);
-        inverse_jacobian(leg: usize, q: &[f64], qd: &[f64], actuated_dd: &[f64]);
-        placement(leg: usize, q: &[f64]);
-        heights(leg: usize, q: &[f64]);
-        swing_velocity(leg: usize, q: &[f64], qd: &[f64]);
-        early(leg: usize, actuated: &[f64], actuated_d: &[f64]);
-        late(leg: usize, early: &[f64], beta: f64);
-        late_gradient(leg: usize, early: &[f64], beta: f64);
+        platform_velocity(mode: Mode, q: &[f64], qd: &[f64]);
+        momentum_terms(mode: Mode, q: &[f64], qd: &[f64]);
+        reduced(mode: Mode, q: &[f64], qd: &[f64]);
+        forward(mode: Mode, q: &[f64], qd: &[f64], gamma: &[f64]);
+        inverse(mode: Mode, q: &[f64], qd: &[f64], actuated_dd: &[f64]);
+        momentum(mode: Mode, q: &[f64], qd: &[f64]);
+        inverse_jacobian(mode: Mode, q: &[f64], qd: &[f64], actuated_dd: &[f64]);
+        placement(mode: Mode, q: &[f64]);
+        heights(mode: Mode, q: &[f64]);
+        swing_velocity(mode: Mode, q: &[f64], qd: &[f64]);
+        early(mode: Mode, actuated: &[f64], actuated_d: &[f64]);
+        late(mode: Mode, early: &[f64], beta: f64);
+        late_gradient(mode: Mode, early: &[f64], beta: f64);
         impact(leg: usize, q: &[f64], xd: &[f64]);
         touchdown(leg: usize, q: &[f64], qd: &[f64]);
-        curvature(leg: usize, q: &[f64], qd: &[f64], qdd: &[f64], n: &[f64], phi: &[f64], others: &[f64]);
-        heights_curvature(leg: usize, q: &[f64], weights: &[f64]);
+        curvature(mode: Mode, q: &[f64], qd: &[f64], qdd: &[f64], n: &[f64], phi: &[f64], others: &[f64]);
+        heights_curvature(mode: Mode, q: &[f64], weights: &[f64]);
         touchdown_curvature(leg: usize, q: &[f64], qd: &[f64], xi: &[f64], outputs: &[f64]);
-        sharing(leg: usize, q: &[f64], qd: &[f64], qdd: &[f64]);
-        sharing_curvature(leg: usize, q: &[f64], qd: &[f64], qdd: &[f64], weights: &[f64]);
+        landing(leg: usize, q: &[f64], v: &[f64], qd: &[f64]);
+        landing_curvature(leg: usize, q: &[f64], v: &[f64], qd: &[f64], xi: &[f64], outputs: &[f64]);
+        takeoff(leg: usize, q: &[f64], qd: &[f64], qdd: &[f64]);
+        takeoff_curvature(leg: usize, q: &[f64], qd: &[f64], qdd: &[f64], weights: &[f64]);
+        sharing(mode: Mode, q: &[f64], qd: &[f64], qdd: &[f64]);
+        sharing_curvature(mode: Mode, q: &[f64], qd: &[f64], qdd: &[f64], weights: &[f64]);
         impact_both(q: &[f64], xd: &[f64]);
     }
 }

@@ -6,7 +6,7 @@
 use nalgebra::DMatrix;
 use piaffe_model::shape::MomentumTerms;
 use piaffe_model::units::Units;
-use piaffe_model::{Description, Gait, Rotation};
+use piaffe_model::{Description, Gait, Mode, Rotation};
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
@@ -163,21 +163,22 @@ fn single_support(gait: &dyn Gait, leg: usize, state: &State, a: &[f64], foot: &
     let (np, nq) = (d.positions(), d.orientations());
     let n = np + nq;
     let (q, qd) = (&state.x[np..], &state.xd[np..]);
-    let mut xd = vector(np, |o| gait.platform_velocity(leg, q, qd, o));
+    let mut xd = vector(np, |o| gait.platform_velocity(Mode::Stance(leg), q, qd, o));
     xd.extend_from_slice(qd);
     let s = d.shapes;
-    let terms = vector(s.momentum_terms.len, |o| gait.momentum_terms(leg, q, qd, o));
+    let terms = vector(s.stance.momentum_terms.len, |o| gait.momentum_terms(Mode::Stance(leg), q, qd, o));
     let mut result = Map::new();
     result.insert("Xdot".into(), json!(xd));
-    let MomentumTerms { f1, f2, sigma, c, sigmadot, .. } = s.momentum_terms;
+    let MomentumTerms { f1, f2, sigma, c, sigmadot, .. } = s.stance.momentum_terms;
     for (key, block) in [("f1", f1), ("f2", f2), ("sigma", sigma), ("c", c), ("sigmadot", sigmadot)] {
         result.insert(key.into(), json!(block.value(&terms)));
     }
     result.insert("H".into(), json!(vector(n, |o| gait.bias(q, qd, o))));
     result.insert("Hi".into(), json!(vector(np, |o| gait.foot_bias(leg, q, qd, o))));
     if let Some(gamma) = &state.gamma {
-        let r = vector(s.forward.len, |o| gait.forward(leg, q, qd, gamma, o));
-        result.insert("forward".into(), json!({ "Xddot": s.forward.xdd.of(&r), "F": s.forward.f.of(&r) }));
+        let r = vector(s.stance.forward.len, |o| gait.forward(Mode::Stance(leg), q, qd, gamma, o));
+        result
+            .insert("forward".into(), json!({ "Xddot": s.stance.forward.xdd.of(&r), "F": s.stance.forward.f.of(&r) }));
     }
     if let Some(xdd) = &state.xdd {
         let condition = condition(&inverse_system(gait, leg, q, a, foot));
@@ -186,8 +187,9 @@ fn single_support(gait: &dyn Gait, leg: usize, state: &State, a: &[f64], foot: &
             "f1 vanishes: no torque-free coordinate follows from the momentum (eq. 10)",
             || {
                 let prescribed: Vec<f64> = (0..d.prescribed()).map(|k| xdd[np + d.prescribed_index(k)]).collect();
-                let r = vector(s.inverse.len, |o| gait.inverse(leg, q, qd, &prescribed, o));
-                let [xdd, gamma, f] = [s.inverse.xdd, s.inverse.gamma, s.inverse.f].map(|block| block.of(&r));
+                let r = vector(s.stance.inverse.len, |o| gait.inverse(Mode::Stance(leg), q, qd, &prescribed, o));
+                let [xdd, gamma, f] =
+                    [s.stance.inverse.xdd, s.stance.inverse.gamma, s.stance.inverse.f].map(|block| block.of(&r));
                 let torques: Vec<f64> = d.independent_torques().map(|j| gamma[j]).collect();
                 json!({ "Xddot": xdd, "betaddot": xdd[np + d.unactuated], "Gamma": torques, "F": f, "cond": condition })
             },
@@ -258,8 +260,9 @@ fn inverse_system(gait: &dyn Gait, leg: usize, q: &[f64], a: &[f64], foot: &[f64
         }
     }
     if level == 1 {
-        let (shape, still) = (&d.shapes.inverse_jacobian, vec![0.0; nq]);
-        let inverse = vector(shape.len, |o| gait.inverse_jacobian(leg, q, &still, &still[..d.prescribed()], o));
+        let (shape, still) = (&d.shapes.stance.inverse_jacobian, vec![0.0; nq]);
+        let inverse =
+            vector(shape.len, |o| gait.inverse_jacobian(Mode::Stance(leg), q, &still, &still[..d.prescribed()], o));
         let balance = shape.balance_w.of(&inverse);
         m[(n + np, np)] = balance[2 * nq + d.unactuated] / Units::new(d).inertia();
     }

@@ -1,38 +1,38 @@
 //! A motion as a walk in the world: one whole step of the real robot, sampled in time.
 //!
 //! Everything comes from `Cycle`, which the optimizer uses too. What is added here is where things are: the
-//! second half step of a mirrored gait, the footprints, and the real legs that a virtual leg stands for.
+//! second half of a mirrored gait, the footprints, and the real legs that a virtual leg stands for.
 
 use crate::cycle::{Cycle, Sample, theta};
+use crate::flow::Undefined;
 use crate::instant::{Glance, Quantities};
-use crate::stance::Undefined;
+use crate::swing::swings;
 use piaffe_model::motion::{Criterion, Motion};
-use piaffe_model::{Body, Description, Gait, HalfSteps, Rotation};
+use piaffe_model::{Body, Description, Gait, Mode, Rotation, Then, Transition};
 
 /// A point or vector in world axes: forward, up, to the right.
 pub type Point = [f64; 3];
 
-/// One step: two half steps.
+/// One whole step: all phases, of a gait that mirrors itself twice.
 #[derive(Clone, Debug)]
 pub struct Walk<'a> {
     pub description: &'a Description,
-    pub half_steps: [Support; 2],
-    /// In order of time. A half step's last moment and the next one's first are at the same time, before and
-    /// after the impact.
+    pub phases: Vec<Span>,
+    /// In order of time. A phase's last moment and the next one's first are at the same time, before and
+    /// after the transition.
     pub moments: Vec<Moment>,
     /// Forward travel in the whole step, m.
     pub travel: f64,
 }
 
-/// One half step.
+/// One phase of a walk.
 #[derive(Clone, Copy, Debug)]
-pub struct Support {
+pub struct Span {
     /// When it begins, s.
     pub start: f64,
     /// s.
     pub duration: f64,
-    /// The virtual leg in support.
-    pub leg: usize,
+    pub mode: Mode,
 }
 
 /// The robot at one time.
@@ -40,12 +40,13 @@ pub struct Support {
 pub struct Moment {
     /// From the beginning of the step, s.
     pub time: f64,
-    /// 0 or 1.
-    pub half_step: usize,
-    /// Time as a share of the half step.
+    /// Which of the walk's phases.
+    pub phase: usize,
+    /// Time as a share of the phase.
     pub share: f64,
-    /// The virtual leg in support.
-    pub stance: usize,
+    pub mode: Mode,
+    /// What ends its phase.
+    pub transition: Transition,
     /// Platform's mass centre, its velocity and acceleration; m, m/s, m/s².
     pub platform: [Point; 3],
     /// Coordinates q of the gait, with rates and accelerations; rad, rad/s, rad/s².
@@ -54,14 +55,14 @@ pub struct Moment {
     pub qdd: Vec<f64>,
     /// Γ of every joint of the virtual legs, N·m.
     pub torque: Vec<f64>,
-    /// Reaction on the virtual leg in support, N.
+    /// Reaction on the virtual leg in support, N; in flight zero.
     pub force: Point,
-    /// Foot of the virtual leg that swings, m.
-    pub swing: Point,
+    /// Feet of both virtual legs, m.
+    pub feet: [Point; 2],
 }
 
 impl<'a> Walk<'a> {
-    /// The walk at equally spaced times, both ends of each half step among them.
+    /// The walk at equally spaced times, both ends of each phase among them.
     ///
     /// # Errors
     /// If the equations admit no such motion.
@@ -84,68 +85,99 @@ impl<'a> Walk<'a> {
         })
     }
 
-    fn new(gait: &'a dyn Gait, motion: &Motion, shares: impl Fn(&Support) -> Vec<f64>) -> Result<Walk<'a>, Undefined> {
+    fn new(gait: &'a dyn Gait, motion: &Motion, shares: impl Fn(&Span) -> Vec<f64>) -> Result<Walk<'a>, Undefined> {
         let d = gait.description();
         // Neither criterion nor speed has a part in where the robot is.
         let cycle = Cycle::resolving(gait, Criterion::Torque, 1.0, &theta(motion))?;
-        let mut moments = Vec::new();
-        let mut stance_foot = [0.0; 3];
-        let mut start = 0.0;
-        let half_steps = [0, 1].map(|h| {
-            let phase = h % d.phases();
-            let duration = motion.half_steps[phase].duration;
-            let leg = if h == phase { cycle.stance_leg(phase) } else { 1 - cycle.stance_leg(phase) };
-            let support = Support { start, duration, leg };
-            start += duration;
-            support
-        });
-        for (h, support) in half_steps.iter().enumerate() {
-            let phase = h % d.phases();
-            let role = Role { gait, leg: support.leg, mirrored: h != phase && d.half_steps == HalfSteps::Mirrored };
-            let last = cycle.last_node(phase);
-            let landing = role.point(cycle.sample(phase, last).swing);
-            if h == 0 {
+        let count = d.phases.len();
+        let rounds = if d.then == Then::Mirrored { 2 } else { 1 };
+        let (mut phases, mut moments) = (Vec::new(), Vec::new());
+        // Where positions of a phase are from: the stance foot, or the ground below the mass centre at take-off.
+        let (mut origin, mut start) = ([0.0; 3], 0.0);
+        for phase in 0..rounds * count {
+            let (k, role) = (phase % count, Role { gait, mirrored: phase >= count });
+            let mode = role.mode(d.phases[k].mode);
+            let span = Span { start, duration: motion.half_steps[k].duration, mode };
+            let ends = [0, cycle.last_node(k)].map(|node| cycle.sample(k, node));
+            if phase == 0 {
                 // The line of travel is midway between the footprints.
-                stance_foot[2] = -0.5 * landing[2];
+                origin[2] = -0.5 * role.feet(&ends[1], mode, [0.0; 3])[1 - mode.stance().unwrap_or_default()][2];
             }
-            let mut glance = Glance::new(d, cycle.stance_leg(phase));
-            for share in shares(support) {
-                let sample = match share {
-                    s if s <= 0.0 => cycle.sample(phase, 0),
-                    s if s >= 1.0 => cycle.sample(phase, last),
+            let mut glance = Glance::new(d, k);
+            for share in shares(&span) {
+                let [first, last] = ends.each_ref();
+                let mut moment = match share {
+                    s if s <= 0.0 => role.moment(first, mode, origin),
+                    s if s >= 1.0 => role.moment(last, mode, origin),
                     s => {
-                        cycle.glance(phase, s, &mut glance)?;
-                        Sample::of(&glance, s)
+                        cycle.glance(k, s, &mut glance)?;
+                        role.moment(&Sample::of(&glance, s), mode, origin)
                     }
                 };
-                let mut moment = role.moment(&sample, stance_foot);
-                (moment.half_step, moment.time) = (h, support.start + share * support.duration);
+                (moment.phase, moment.time) = (phase, span.start + share * span.duration);
+                moment.transition = role.transition(d.transition(k));
                 moments.push(moment);
             }
             // The foot lands on the ground: what is left of its height is rounding.
-            stance_foot = [stance_foot[0] + landing[0], 0.0, stance_foot[2] + landing[2]];
+            let last = role.feet(&ends[1], mode, origin);
+            origin = match role.transition(d.transition(k)) {
+                Transition::Touchdown(leg) | Transition::Landing(leg) => [last[leg][0], 0.0, last[leg][2]],
+                Transition::TakeOff(_) => {
+                    let next = &cycle.sample((k + 1) % count, 0);
+                    let (here, there) = (role.point(&ends[1].platform), role.point(&next.platform));
+                    [origin[0] + here[0] - there[0], 0.0, origin[2]]
+                }
+            };
+            start += span.duration;
+            phases.push(span);
         }
-        Ok(Walk { description: d, half_steps, moments, travel: stance_foot[0] })
+        let travel = origin[0];
+        Ok(Walk { description: d, phases, moments, travel })
     }
 
     /// Duration of the step, s.
     pub fn duration(&self) -> f64 {
-        self.half_steps.iter().map(|h| h.duration).sum()
+        self.phases.iter().map(|phase| phase.duration).sum()
     }
 }
 
-/// How a half step that defines the gait is performed: as it is, or by the other leg.
+/// How a phase of the gait is performed: as it is, or by the other legs.
 struct Role<'a> {
     gait: &'a dyn Gait,
-    leg: usize,
     mirrored: bool,
 }
 
 impl Role<'_> {
+    fn mode(&self, mode: Mode) -> Mode {
+        if self.mirrored { mode.exchanged() } else { mode }
+    }
+
+    fn transition(&self, transition: Transition) -> Transition {
+        let leg = |leg: usize| if self.mirrored { 1 - leg } else { leg };
+        match transition {
+            Transition::Touchdown(lands) => Transition::Touchdown(leg(lands)),
+            Transition::Landing(lands) => Transition::Landing(leg(lands)),
+            Transition::TakeOff(leaves) => Transition::TakeOff(leg(leaves)),
+        }
+    }
+
     /// A vector of the gait's positions in world axes.
     fn point(&self, p: &[f64]) -> Point {
         let z = p.get(2).copied().unwrap_or(0.0);
         [p[0], p[1], if self.mirrored { -z } else { z }]
+    }
+
+    /// Feet of both legs; one that stands is at the origin of the phase's positions.
+    fn feet(&self, sample: &Sample, mode: Mode, origin: Point) -> [Point; 2] {
+        let mut feet = [origin; 2];
+        let components = self.gait.description().positions();
+        // In the order of the legs as the phase calls them.
+        let swinging: Vec<usize> =
+            self.mode(mode).swinging().map(|leg| if self.mirrored { 1 - leg } else { leg }).collect();
+        for (leg, foot) in swinging.into_iter().zip(sample.feet.chunks(components)) {
+            feet[leg] = add(origin, self.point(foot));
+        }
+        feet
     }
 
     /// Values of all coordinates or joints, with the legs renamed.
@@ -158,35 +190,51 @@ impl Role<'_> {
         (0..values.len()).map(take).collect()
     }
 
-    fn moment(&self, sample: &Sample, stance_foot: Point) -> Moment {
+    fn moment(&self, sample: &Sample, mode: Mode, origin: Point) -> Moment {
         let d = self.gait.description();
-        let y = Quantities::new(d);
-        let (nc, nj, shape) = (d.positions(), d.joints(), &d.shapes.inverse);
-        let at = |p: Point| [0, 1, 2].map(|k| p[k] + stance_foot[k]);
+        let (y, shape) = (Quantities::new(d, mode), &d.shape(mode).inverse);
+        let (nc, nj) = (d.positions(), d.joints());
         let [q, qd, qdd] = sample.state.map(|v| self.renamed(v));
         let prescribed: Vec<f64> = (0..d.prescribed()).map(|k| qdd[d.prescribed_index(k)]).collect();
         let mut velocity = vec![0.0; nc];
-        self.gait.platform_velocity(self.leg, &q, &qd, &mut velocity);
+        self.gait.platform_velocity(mode, &q, &qd, &mut velocity);
+        velocity.iter_mut().zip(sample.centre_velocity).for_each(|(v, centre)| *v += centre);
         let mut inverse = shape.zeros();
-        self.gait.inverse(self.leg, &q, &qd, &prescribed, &mut inverse);
-        let plain = Role { gait: self.gait, leg: self.leg, mirrored: false };
+        self.gait.inverse(mode, &q, &qd, &prescribed, &mut inverse);
+        let plain = Role { gait: self.gait, mirrored: false };
+        let force = match y.components() {
+            0 => [0.0; 3],
+            components => self.point(&sample.quantities[y.force(0)..][..components]),
+        };
         Moment {
             time: 0.0,
-            half_step: 0,
+            phase: 0,
             share: sample.share,
-            stance: self.leg,
+            mode,
+            transition: Transition::Touchdown(0),
             platform: [
-                at(self.point(sample.platform)),
+                add(origin, self.point(&sample.platform)),
                 plain.point(&velocity),
                 plain.point(&shape.xdd.of(&inverse)[..nc]),
             ],
             torque: self.renamed(&sample.quantities[y.torque(0)..][..nj]),
-            force: self.point(&sample.quantities[y.force(0)..][..nc]),
-            swing: at(self.point(sample.swing)),
+            force,
+            feet: self.feet(sample, mode, origin),
             q,
             qd,
             qdd,
         }
+    }
+}
+
+impl Walk<'_> {
+    /// The curve above which the foot of a leg stays, at a moment, per height of it; zero on the ground.
+    pub fn clearance_curve(&self, leg: usize, m: &Moment) -> f64 {
+        let (d, count) = (self.description, self.description.phases.len());
+        let durations: Vec<f64> = self.phases[..count].iter().map(|phase| phase.duration).collect();
+        let leg = if m.phase >= count { 1 - leg } else { leg };
+        let swings = swings(d, m.phase % count);
+        swings.iter().find(|swing| swing.leg == leg).map_or(0.0, |swing| swing.height(&durations, m.share))
     }
 }
 

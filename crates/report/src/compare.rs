@@ -79,11 +79,11 @@ fn spent(s: &Subject) -> Vec<String> {
     };
     let mut depths = vec![0.0; s.depths()];
     let mut standing = 0.0;
-    for pair in s.walk.moments.windows(2).filter(|pair| pair[0].half_step == pair[1].half_step) {
+    for pair in s.walk.moments.windows(2).filter(|pair| pair[0].phase == pair[1].phase) {
         for j in 0..s.description().joints() {
             let part = 0.5 * (pair[1].time - pair[0].time) * (rate(&pair[0], j) + rate(&pair[1], j));
             depths[s.depth(j)] += part;
-            standing += if s.leg_of(j) == pair[0].stance { part } else { 0.0 };
+            standing += if pair[0].mode.stance() == Some(s.leg_of(j)) { part } else { 0.0 };
         }
     }
     let all: f64 = depths.iter().sum();

@@ -37,11 +37,11 @@ fn one(s: &Subject, depth: usize) -> Figure {
     let edge = vec![[0.0, unloaded], [most, loaded], [most, 0.0]];
     plot.limits = vec![Limit { name: String::new(), points: edge }];
     for &j in &joints {
-        let halves = [0, 1].map(|h| {
-            let moments = s.walk.moments.iter().filter(move |m| m.half_step == h);
+        let phases = (0..s.walk.phases.len()).map(|k| {
+            let moments = s.walk.moments.iter().filter(move |m| m.phase == k);
             moments.map(|m| [torque(m.torque[j].abs()), rev_per_min(m.qd[j].abs())]).collect()
         });
-        let curve = Curve::new(d.joints[j].name, Ink::Leg(s.leg_of(j)), halves.to_vec());
+        let curve = Curve::new(d.joints[j].name, Ink::Leg(s.leg_of(j)), phases.collect());
         plot.curves.push(curve.dash(if j == joints[0] { Dash::Solid } else { Dash::Dashed }));
     }
     let tightest = joints.iter().filter_map(|j| s.result.peaks.get(*j));

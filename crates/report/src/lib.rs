@@ -43,7 +43,7 @@ pub use record::{Record, Standing};
 pub use subject::Subject;
 
 use atlas::Atlas;
-use piaffe_optimizer::stance::Undefined;
+use piaffe_optimizer::flow::Undefined;
 
 /// Why there is no report.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

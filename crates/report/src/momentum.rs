@@ -1,21 +1,20 @@
 //! Momentum about the stance foot (eq. 8): what gravity gives along a half step and the impact takes.
 
 use super::figure::Figure;
-use super::ink::Ink;
 use super::plot::Curve;
 use super::subject::Subject;
 
 pub fn momentum(s: &Subject) -> Figure {
     let mut plot = s.time_plot("Momentum about the stance foot", "kg·m²/s");
-    let shape = &s.description().shapes.momentum;
     let sigma = |m: &piaffe_optimizer::walk::Moment| {
+        let shape = &s.description().shape(m.mode).momentum;
         let mut momentum = shape.zeros();
-        s.gait.momentum(m.stance, &m.q, &m.qd, &mut momentum);
+        s.gait.momentum(m.mode, &m.q, &m.qd, &mut momentum);
         shape.sigma.value(&momentum)
     };
     for (k, segment) in s.over_time(sigma).into_iter().enumerate() {
-        let leg = s.walk.half_steps[k].leg;
-        plot.curves.push(Curve::new(format!("on {}", s.short_leg_name(leg)), Ink::Leg(leg), vec![segment]));
+        let (name, ink) = s.mode(s.walk.phases[k].mode);
+        plot.curves.push(Curve::new(name, ink, vec![segment]));
     }
     Figure::plot(
         "momentum",

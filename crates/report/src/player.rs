@@ -4,6 +4,7 @@
 use super::plot::rounded;
 use super::scale::round_step;
 use super::subject::Subject;
+use piaffe_model::Mode;
 use piaffe_optimizer::four_legs::Legs;
 use piaffe_optimizer::walk::{Moment, Point};
 use serde_json::{Value, json};
@@ -25,7 +26,7 @@ pub fn data(s: &Subject) -> Value {
         .collect();
     let mounts = d.legs.iter().flat_map(|leg| leg.members.iter()).map(|m| metre * m.mount()[2].abs());
     let widest = mounts.fold(0.0, f64::max);
-    let per_half = s.walk.moments.iter().filter(|m| m.half_step == 0).count();
+    let per_half = s.walk.moments.iter().filter(|m| m.phase == 0).count();
     let shown = s.walk.moments.iter().enumerate().filter(|(k, _)| (k % per_half).is_multiple_of(EVERY));
     let real = Legs::new(s.gait);
     let frames: Vec<Value> = shown
@@ -35,7 +36,7 @@ pub fn data(s: &Subject) -> Value {
                 .map(|(leg, member)| lengths(&m.chain(d, leg, member)))
                 .collect();
             let forces = thousandths(&reactions(s, real.as_ref(), m), 1000.0 / d.weight());
-            json!([rounded(m.time), m.stance, lengths(&[m.platform[0]]), forces, chains])
+            json!([rounded(m.time), m.mode.stance(), lengths(&[m.platform[0]]), forces, chains])
         })
         .collect();
     json!({
@@ -52,10 +53,12 @@ pub fn data(s: &Subject) -> Value {
 
 /// On every foot, in the order of the legs; equal shares where the real legs are not known.
 fn reactions(s: &Subject, real: Option<&Legs>, m: &Moment) -> Vec<Point> {
-    let known = real.and_then(|legs| Some((legs.whole.description(), legs.support(m).ok()?.reactions)));
+    let known = real
+        .zip(m.mode.stance())
+        .and_then(|(legs, stance)| Some((legs.whole.description(), legs.support(m, stance).ok()?.reactions)));
     let of = |leg: usize, name: &str| match &known {
         Some((w, reactions)) => w.legs.iter().position(|l| l.name == name).map_or([0.0; 3], |k| reactions[k]),
-        None if leg == m.stance => m.force.map(|f| f / s.description().legs[leg].members.len() as f64),
+        None if m.mode == Mode::Stance(leg) => m.force.map(|f| f / s.description().legs[leg].members.len() as f64),
         None => [0.0; 3],
     };
     (0..2)

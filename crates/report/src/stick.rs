@@ -88,9 +88,11 @@ impl View {
             let points: Vec<Xy> = points.into_iter().map(|p| place(self.project(p))).collect();
             scene.line(&points, Pen::new(ink, 1.4).dash(Dash::Dotted));
         };
-        for (k, half) in s.walk.half_steps.iter().enumerate() {
-            let swing = s.walk.moments.iter().filter(|m| m.half_step == k).map(|m| m.swing).collect();
-            path(&mut scene, swing, Ink::Leg(1 - half.leg));
+        for (k, phase) in s.walk.phases.iter().enumerate() {
+            for leg in phase.mode.swinging() {
+                let foot = s.walk.moments.iter().filter(|m| m.phase == k).map(|m| m.feet[leg]).collect();
+                path(&mut scene, foot, Ink::Leg(leg));
+            }
         }
         let mut order: Vec<usize> = (0..poses.len()).collect();
         // The poses at impacts come last, so that they are on top.
@@ -140,12 +142,12 @@ impl View {
     }
 }
 
-/// Moments at equal times, both ends of each half step among them.
+/// Moments at equal times, both ends of each phase among them.
 fn poses<'s>(s: &'s Subject) -> Vec<&'s Moment> {
     let half = |h| {
-        let moments: Vec<&Moment> = s.walk.moments.iter().filter(|m| m.half_step == h).collect();
+        let moments: Vec<&Moment> = s.walk.moments.iter().filter(|m| m.phase == h).collect();
         let last = moments.len() - 1;
         (0..POSES).map(move |k| moments[(k * last + (POSES - 1) / 2) / (POSES - 1)]).collect::<Vec<_>>()
     };
-    [half(0), half(1)].concat()
+    (0..s.walk.phases.len()).flat_map(half).collect()
 }

@@ -5,12 +5,12 @@ use super::record::Record;
 use super::scene::{Dash, Xy};
 use super::{ink::Ink, plot::Curve};
 use piaffe_model::motion::Motion;
-use piaffe_model::{Description, Gait};
+use piaffe_model::{Description, Gait, Mode};
+use piaffe_optimizer::flow::Undefined;
 use piaffe_optimizer::result::GaitResult;
-use piaffe_optimizer::stance::Undefined;
-use piaffe_optimizer::walk::{Moment, Walk};
+use piaffe_optimizer::walk::{self, Moment, Walk};
 
-/// Intervals per half step with which curves are drawn.
+/// Intervals per phase with which curves are drawn.
 const INTERVALS: usize = 80;
 
 pub struct Subject<'a> {
@@ -85,18 +85,18 @@ impl<'a> Subject<'a> {
         leg.end_joint - leg.first_joint
     }
 
-    /// A value over time, half step by half step.
+    /// A value over time, phase by phase.
     pub fn over_time(&self, value: impl Fn(&Moment) -> f64) -> Vec<Vec<Xy>> {
-        by_half_step(&self.walk, value)
+        by_phase(&self.walk, value)
     }
 
     /// The same at `times` as many moments.
     pub fn finely(&self, times: usize, value: impl Fn(&Moment) -> f64) -> Vec<Vec<Xy>> {
         let fine = Walk::even(self.gait, &self.motion, times * INTERVALS);
-        by_half_step(fine.as_ref().unwrap_or(&self.walk), value)
+        by_phase(fine.as_ref().unwrap_or(&self.walk), value)
     }
 
-    /// A plot over the time of the walk, with the half steps tinted by the leg in support.
+    /// A plot over the time of the walk, with the phases tinted by the leg in support.
     pub fn time_plot(&self, title: impl Into<String>, unit: &'static str) -> Plot {
         let time = Axis::new("time", "s").over([0.0, self.walk.duration()]);
         let mut plot = Plot::new(title, time, Axis::new("", unit));
@@ -106,12 +106,19 @@ impl<'a> Subject<'a> {
     }
 
     pub fn spans(&self) -> Vec<Span> {
-        let span = |h: &piaffe_optimizer::walk::Support| Span {
-            name: format!("on {}", self.short_leg_name(h.leg)),
-            interval: [h.start, h.start + h.duration],
-            ink: Ink::Leg(h.leg),
+        let span = |phase: &walk::Span| {
+            let (name, ink) = self.mode(phase.mode);
+            Span { name, interval: [phase.start, phase.start + phase.duration], ink }
         };
-        self.walk.half_steps.iter().map(span).collect()
+        self.walk.phases.iter().map(span).collect()
+    }
+
+    /// A mode in words, and its colour.
+    pub fn mode(&self, mode: Mode) -> (String, Ink) {
+        match mode {
+            Mode::Stance(leg) => (format!("on {}", self.short_leg_name(leg)), Ink::Leg(leg)),
+            Mode::Flight => ("in flight".into(), Ink::Muted),
+        }
     }
 
     /// A curve for every joint of `joints`.
@@ -129,12 +136,9 @@ impl<'a> Subject<'a> {
     }
 }
 
-fn by_half_step(walk: &Walk, value: impl Fn(&Moment) -> f64) -> Vec<Vec<Xy>> {
-    let half = |h| {
-        let moments = walk.moments.iter().filter(move |m| m.half_step == h);
-        moments.map(|m| [m.time, value(m)]).collect()
-    };
-    vec![half(0), half(1)]
+fn by_phase(walk: &Walk, value: impl Fn(&Moment) -> f64) -> Vec<Vec<Xy>> {
+    let of_phase = |k| walk.moments.iter().filter(move |m| m.phase == k).map(|m| [m.time, value(m)]).collect();
+    (0..walk.phases.len()).map(of_phase).collect()
 }
 
 /// A name of the specification for a reader.

@@ -7,16 +7,13 @@ use super::impact::impact_of;
 use super::margins::Units;
 use super::multibody::Multibody;
 use super::numbers::Numbers;
+use piaffe_model::Description;
 use piaffe_model::motion::HalfStep;
-use piaffe_model::{Description, HalfSteps};
 use piaffe_number::Scalar;
 
 /// Leg that half step `index` stands on.
 pub fn stance_leg(description: &Description, index: usize) -> usize {
-    match description.half_steps {
-        HalfSteps::Mirrored => 0,
-        HalfSteps::Distinct => index,
-    }
+    description.phases[index].mode.stance().unwrap_or_default()
 }
 
 /// Notes the margins of the impact that ends half step `index`, and returns how far the initial state of the one after
@@ -42,10 +39,7 @@ pub fn transition<T: Scalar>(
     let found = description.complete(&after.q_initial, after.beta_initial);
     let found_rates = description.complete(&after.qd_initial, after.betad_initial);
     let gaps = (0..q.len()).flat_map(|k| {
-        let (from, sign) = match description.half_steps {
-            HalfSteps::Mirrored => description.swapped(k),
-            HalfSteps::Distinct => (k, 1.0),
-        };
+        let (from, sign) = description.renamed(index, k);
         [found[k] - q[from].scale(sign), relative(&units, found_rates[k], rates[from].scale(sign))]
     });
     Ok(gaps.collect())

@@ -57,7 +57,7 @@ impl VerifyError {
 
 /// Whether the motion has the numbers that the gait needs, all of them finite.
 pub(crate) fn check(description: &Description, motion: &Motion, grid: usize) -> Result<(), VerifyError> {
-    let (expected, found) = (description.phases(), motion.half_steps.len());
+    let (expected, found) = (description.phases.len(), motion.half_steps.len());
     if expected != found {
         return Err(VerifyError::HalfSteps { gait: description.gait, expected, found });
     }

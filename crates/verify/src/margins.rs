@@ -45,9 +45,15 @@ impl Units {
         SLOW / self.time
     }
 
-    /// Margins of a half step's duration.
-    pub fn duration<T: Scalar>(&self, numbers: &Numbers<T>, duration: T, mut note: impl FnMut(Constraint, T)) {
-        let ([shortest, longest], time) = (numbers.half_step_duration, T::from(self.time));
+    /// Margins of the duration of phase `k`.
+    pub fn duration<T: Scalar>(
+        &self,
+        numbers: &Numbers<T>,
+        k: usize,
+        duration: T,
+        mut note: impl FnMut(Constraint, T),
+    ) {
+        let ([shortest, longest], time) = (numbers.durations[k], T::from(self.time));
         note(Constraint::Shortest, (duration - shortest) / time);
         note(Constraint::Longest, (longest - duration) / time);
     }

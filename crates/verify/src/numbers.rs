@@ -20,7 +20,8 @@ pub struct Numbers<T = f64> {
     pub friction: T,
     pub min_vertical_force: T,
     pub swing_clearance: T,
-    pub half_step_duration: [T; 2],
+    /// Shortest and longest, of each phase.
+    pub durations: Vec<[T; 2]>,
     pub min_platform_height: T,
     pub body_clearance: T,
 }
@@ -91,7 +92,7 @@ impl<T: Scalar> Numbers<T> {
             friction: one(),
             min_vertical_force: one(),
             swing_clearance: one(),
-            half_step_duration: [one(), one()],
+            durations: description.phases.iter().map(|_| [one(), one()]).collect(),
             min_platform_height: one(),
             body_clearance: one(),
         }

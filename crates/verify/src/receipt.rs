@@ -88,7 +88,7 @@ pub fn verify(description: &Description, motion: &Motion, speed: f64, grid: usiz
         let all = gaps.into_iter().chain(closure(&units, half_step, phase.beta_end()));
         cycle_error = all.fold(cycle_error, |worst, gap| worst.max(gap.abs()));
         let numbers = phase.numbers();
-        units.duration(numbers, half_step.duration, |constraint, margin| {
+        units.duration(numbers, i, half_step.duration, |constraint, margin| {
             tally.note(constraint, margin, half_step.duration)
         });
         tallies.push(tally);

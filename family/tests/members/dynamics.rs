@@ -2,7 +2,7 @@
 
 use super::draws::{GENERAL, member};
 use super::kernels::{assert_close, filled, vector};
-use piaffe::model::Gait;
+use piaffe::model::{Gait, Mode};
 use piaffe::verify::{impact::impact, instants::State, multibody::Multibody, support::Support};
 use piaffe_family::FAMILIES;
 
@@ -47,7 +47,7 @@ fn single_support_agrees() {
         let (np, n, joints) = (d.positions(), d.positions() + d.orientations(), d.joints());
         let prescribed: Vec<f64> = (0..d.prescribed()).map(|k| qdd[d.prescribed_index(k)]).collect();
         for leg in 0..2 {
-            if filled(5, |o| gait.momentum_terms(leg, q, qd, o))[0].abs() < 0.05 {
+            if filled(5, |o| gait.momentum_terms(Mode::Stance(leg), q, qd, o))[0].abs() < 0.05 {
                 continue; // close to where eq. 10 is singular, both are as inaccurate as they must be
             }
             let mut support = Support::new(d, leg);
@@ -55,13 +55,13 @@ fn single_support_agrees() {
             let mut torques = vec![0.0; joints];
             let force = support.torques(&qdd, &mut torques);
             let expected = [&qdd[..], &torques, &force.as_slice()[..np]].concat();
-            let found = filled(n + joints + np, |o| gait.inverse(leg, q, qd, &prescribed, o));
+            let found = filled(n + joints + np, |o| gait.inverse(Mode::Stance(leg), q, qd, &prescribed, o));
             assert_close("β̈, Γ, F", &found[np..], &expected, TOLERANCE);
 
             let mut state = State { qdd: qdd.clone(), ..State::new(d) };
             support.complete(&mut state);
             let rows: Vec<f64> = d.lowest.iter().map(|point| state.heights[*point]).collect();
-            let found = filled(rows.len() * (1 + q.len()), |o| gait.heights(leg, q, o));
+            let found = filled(rows.len() * (1 + q.len()), |o| gait.heights(Mode::Stance(leg), q, o));
             assert_close("heights", &found[..rows.len()], &rows, TOLERANCE);
             let least = |list: &[f64]| [list.iter().copied().fold(f64::INFINITY, f64::min)];
             assert_close("lowest", &least(&rows), &least(&state.heights), TOLERANCE);

@@ -1,7 +1,7 @@
 //! Compiled members against the derivation with their numbers folded in, interpreted.
 
 use super::draws::{GENERAL, member};
-use super::kernels::{assert_close, call, filled, vector};
+use super::kernels::{assert_close, call, filled, mode, vector};
 use piaffe::model::Body;
 use piaffe_codegen::dynamics::{Kernel, Model, family_kernels, kernels};
 use piaffe_codegen::mechanism::{Family, Mechanism, parameters, with};
@@ -31,8 +31,9 @@ fn outputs(kernel: &Kernel) -> usize {
 }
 
 /// What the late kernels take is what the early ones of the same derivation give.
-fn early<'k>(name: &str, inputs: &'k BTreeMap<String, Vec<f64>>) -> Option<&'k Vec<f64>> {
-    name.strip_prefix("late").and_then(|rest| inputs.get(&format!("early{}", &rest[rest.len() - 1..])))
+fn early<'k>(kernel: &Kernel, inputs: &'k BTreeMap<String, Vec<f64>>) -> Option<&'k Vec<f64>> {
+    let mode = kernel.mode.filter(|_| kernel.base().starts_with("late"))?;
+    inputs.get(&mode.kernel("early"))
 }
 
 #[test]
@@ -51,15 +52,13 @@ fn members_compute_what_is_derived_for_their_numbers() {
                 let draw = |i: &piaffe_codegen::dynamics::Input| vector(i.symbols.len(), 1.0, &mut rng);
                 let mut inputs: Vec<Vec<f64>> = kernel.inputs.iter().map(draw).collect();
                 let mut own = inputs.clone();
-                if let (Some(folded), Some(mine)) =
-                    (early(&kernel.name, &folded_early), early(&kernel.name, &own_early))
-                {
+                if let (Some(folded), Some(mine)) = (early(kernel, &folded_early), early(kernel, &own_early)) {
                     (inputs[0], own[0]) = (folded.clone(), mine.clone());
                 }
                 let expected = interpret(&model, kernel, &inputs);
-                if let Some(leg) = kernel.name.strip_prefix("early") {
+                if kernel.base() == "early" {
                     // The split may differ; what the late kernels make of it may not.
-                    let length = robot_member.description().early[usize::from(leg == "2")];
+                    let length = robot_member.description().shape(mode(&kernel.name)).early.len;
                     let found = filled(length, |o| call(&*robot_member, &kernel.name, &own, o));
                     own_early.insert(kernel.name.clone(), found);
                     folded_early.insert(kernel.name.clone(), expected);

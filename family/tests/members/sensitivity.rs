@@ -4,7 +4,7 @@ use super::draws::{GENERAL, member};
 use super::kernels::{assert_close, filled, vector};
 use piaffe::model::family::{Family, Parametric};
 use piaffe::model::shape::MomentumTerms;
-use piaffe::model::{FORWARD, UP};
+use piaffe::model::{FORWARD, Mode, UP};
 use piaffe_family::FAMILIES;
 
 /// Of sums of outputs that are of order one or more.
@@ -44,11 +44,11 @@ fn each(check: impl Fn(&Family, &dyn Parametric, usize, &mut fastrand::Rng)) {
 #[test]
 fn of_inverse_dynamics() {
     each(|family, robot, leg, rng| {
-        let d = robot.description();
+        let (d, mode) = (robot.description(), Mode::Stance(leg));
         let (n, joints, np) = (d.orientations(), d.joints(), d.positions());
         let (q, qd, qdd) = (vector(n, 0.8, rng), vector(n, 4.0, rng), vector(d.prescribed(), 30.0, rng));
-        let shape = &d.shapes.inverse_jacobian;
-        let jacobian = |m: &dyn Parametric| filled(shape.len, |o| m.inverse_jacobian(leg, &q, &qd, &qdd, o));
+        let shape = &d.shape(mode).inverse_jacobian;
+        let jacobian = |m: &dyn Parametric| filled(shape.len, |o| m.inverse_jacobian(mode, &q, &qd, &qdd, o));
         let own = jacobian(robot);
         let mut all: Vec<f64> = (0..n - 1).map(|k| qdd[k]).collect();
         all.insert(d.unactuated, shape.beta_dd.value(&own));
@@ -63,7 +63,7 @@ fn of_inverse_dynamics() {
         let (mut gamma, phi) = (weights[..joints].to_vec(), &weights[joints..]);
         gamma.push(-dot(&weights, &by_beta) / f1);
         let by_lump = filled(robot.lumps().len(), |o| {
-            robot.sensitivity(leg, &q, &qd, &all, &gamma, phi, &d.shapes.curvature.others.zeros(), o)
+            robot.sensitivity(mode, &q, &qd, &all, &gamma, phi, &d.shape(mode).curvature.others.zeros(), o)
         });
         let value = |m: &dyn Parametric| {
             let own = jacobian(m);
@@ -76,19 +76,20 @@ fn of_inverse_dynamics() {
 #[test]
 fn of_momentum_heights_and_velocities() {
     each(|family, robot, leg, rng| {
-        let d = robot.description();
+        let (d, mode) = (robot.description(), Mode::Stance(leg));
         let (n, np) = (d.orientations(), d.positions());
         let (q, qd) = (vector(n, 1.0, rng), vector(n, 5.0, rng));
-        let (s, to) = (d.shapes, &d.shapes.curvature.others);
+        let s = d.shape(mode);
+        let to = &s.curvature.others;
         let weights = vector(to.len, 1.0, rng);
         let (gamma, phi) = (vec![0.0; d.joints() + 1], vec![0.0; np]);
         let by_lump = filled(robot.lumps().len(), |o| {
-            robot.sensitivity(leg, &q, &qd, &vec![0.0; n], &gamma, &phi, &weights, o);
+            robot.sensitivity(mode, &q, &qd, &vec![0.0; n], &gamma, &phi, &weights, o);
         });
         let value = |m: &dyn Parametric| {
-            let terms = filled(s.momentum_terms.len, |o| m.momentum_terms(leg, &q, &qd, o));
-            let place = filled(s.placement.len, |o| m.placement(leg, &q, o));
-            let velocity = filled(s.swing_velocity.len, |o| m.swing_velocity(leg, &q, &qd, o));
+            let terms = filled(s.momentum_terms.len, |o| m.momentum_terms(mode, &q, &qd, o));
+            let place = filled(s.placement.len, |o| m.placement(mode, &q, o));
+            let velocity = filled(s.swing_velocity.len, |o| m.swing_velocity(mode, &q, &qd, o));
             let (platform, swing) = (s.placement.p.of(&place), s.placement.swing.of(&place));
             let weighted = [
                 (to.sigma, s.momentum_terms.sigma.value(&terms)),
@@ -104,9 +105,9 @@ fn of_momentum_heights_and_velocities() {
         assert_close("σ, σ̇, heights", &robot.pull_back(&by_lump), &expected, TOLERANCE);
 
         let weights = vector(3, 1.0, rng);
-        let by_lump = filled(robot.lumps().len(), |o| robot.terms_sensitivity(leg, &q, &qd, &weights, o));
+        let by_lump = filled(robot.lumps().len(), |o| robot.terms_sensitivity(mode, &q, &qd, &weights, o));
         let value = |m: &dyn Parametric| {
-            let terms = filled(s.momentum_terms.len, |o| m.momentum_terms(leg, &q, &qd, o));
+            let terms = filled(s.momentum_terms.len, |o| m.momentum_terms(mode, &q, &qd, o));
             let MomentumTerms { f1, f2, c, .. } = s.momentum_terms;
             dot(&weights, &[f1, f2, c].map(|block| block.value(&terms)))
         };
@@ -118,6 +119,7 @@ fn of_momentum_heights_and_velocities() {
 fn of_touchdowns() {
     each(|family, robot, leg, rng| {
         let d = robot.description();
+        let leg = d.transition(leg % d.phases.len()).lands().unwrap();
         let (n, s) = (d.orientations(), &d.shapes.touchdown);
         let (q, qd) = (vector(n, 0.8, rng), vector(n, 3.0, rng));
         let weights = vector(n + d.shapes.touchdown_curvature.outputs.len, 1.0, rng);

@@ -1,14 +1,14 @@
 //! Validity of the impact (§4.2, eq. 12): the impulse pushes and does not slide, the other foot leaves.
 //!
-//! Impulse upward; tangential impulse at most μ times it; vertical velocity of the leaving foot ≥ 0.
+//! Impulse upward; tangential impulse at most μ times it; vertical velocity of the leaving foot ≥ 0, if one stood.
 
 use super::sharing::{applies, first, length, offsets, second};
-use piaffe_model::shape::TouchdownCurvatureOutputs;
+use piaffe_model::shape::{LandingCurvatureOutputs, TouchdownCurvatureOutputs};
 use piaffe_model::units::Units;
-use piaffe_model::{Description, FORWARD, Limit, SIDEWAYS, UP};
+use piaffe_model::{Description, FORWARD, Limit, SIDEWAYS, Transition, UP};
 use piaffe_number::Scalar;
 
-/// Formulas on the results of a touchdown kernel.
+/// Formulas on the results of a touchdown's or a landing's kernel.
 #[derive(Clone, Debug)]
 pub struct ImpactConstraints<T = f64> {
     friction: T,
@@ -23,17 +23,25 @@ pub struct ImpactConstraints<T = f64> {
 }
 
 impl<T: Scalar> ImpactConstraints<T> {
-    /// With this coefficient of friction.
-    pub fn with(description: &Description, friction: T) -> ImpactConstraints<T> {
+    /// Of such a transition, with this coefficient of friction; none where nothing lands.
+    pub fn with(description: &Description, transition: Transition, friction: T) -> Option<ImpactConstraints<T>> {
         let units = Units::new(description);
-        ImpactConstraints {
+        let y = match transition {
+            Transition::Touchdown(_) => description.shapes.touchdown_curvature.outputs,
+            Transition::Landing(_) => {
+                let LandingCurvatureOutputs { impulse, landing, len } = description.shapes.landing_curvature.outputs;
+                TouchdownCurvatureOutputs { impulse, landing, len, ..TouchdownCurvatureOutputs::NONE }
+            }
+            Transition::TakeOff(_) => return None,
+        };
+        Some(ImpactConstraints {
             friction,
             lateral: description.lateral,
             unit: units.impulse(),
             speed: units.speed(),
-            y: description.shapes.touchdown_curvature.outputs,
+            y,
             feet: if applies(description) { offsets(description) } else { Vec::new() },
-        }
+        })
     }
 
     /// Which limit value `i` is.
@@ -52,7 +60,8 @@ impl<T: Scalar> ImpactConstraints<T> {
     }
 
     fn of_virtual_leg(&self) -> usize {
-        if self.lateral { 3 } else { 4 }
+        let of_impulse = if self.lateral { 2 } else { 3 };
+        of_impulse + self.y.leaving.len()
     }
 
     /// `μ I_y − |(I_x, I_z)|` of a real foot from the results of a touchdown; see `sharing`.
@@ -87,8 +96,8 @@ impl<T: Scalar> ImpactConstraints<T> {
 }
 
 impl ImpactConstraints {
-    pub fn new(description: &Description) -> ImpactConstraints {
-        ImpactConstraints::with(description, description.limits.friction)
+    pub fn new(description: &Description, transition: Transition) -> Option<ImpactConstraints> {
+        ImpactConstraints::with(description, transition, description.limits.friction)
     }
 
     /// Calls `add(index in (impulse…, leaving, landing, couple…), partial derivative)` for value `i`.

@@ -10,7 +10,8 @@ pub struct Limits<T = f64> {
     pub friction: T,
     pub min_vertical_force: T,
     pub swing_clearance: T,
-    pub half_step_duration: [T; 2],
+    /// Shortest and longest, of each phase.
+    pub durations: Vec<[T; 2]>,
     pub min_platform_height: T,
     pub body_clearance: T,
 }
@@ -52,7 +53,7 @@ impl<T: Scalar> Limits<T> {
             friction: one(&|d| d.limits.friction),
             min_vertical_force: one(&|d| d.limits.min_vertical_force),
             swing_clearance: one(&|d| d.limits.swing_clearance),
-            half_step_duration: [0, 1].map(|end| one(&|d| d.limits.half_step_duration[end])),
+            durations: (0..d.phases.len()).map(|k| [0, 1].map(|end| one(&|d| d.phases[k].duration[end]))).collect(),
             min_platform_height: one(&|d| d.limits.min_platform_height),
             body_clearance: one(&|d| d.limits.body_clearance),
         }

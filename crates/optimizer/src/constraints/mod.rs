@@ -1,7 +1,7 @@
 //! The constraints of §4.2 and §6.1, one file each.
 //!
-//! A *path constraint* holds at every instant and is a formula in the quantities of an instant; an
-//! *impact constraint* holds at the end of a half step. All read `value ≥ 0` after division by a
+//! A *path constraint* holds at every instant of a phase and is a formula in the quantities of an instant; an
+//! *impact constraint* holds where a foot lands. All read `value ≥ 0` after division by a
 //! natural unit, so that 1e-6 means the same everywhere.
 
 mod actuator;
@@ -17,6 +17,7 @@ pub use impact::ImpactConstraints;
 pub use limits::{JointLimits, Limits};
 
 use crate::instant::Quantities;
+use crate::swing::swings;
 use piaffe_model::{Description, Limit};
 use piaffe_number::Scalar;
 use sharing::Share;
@@ -45,20 +46,29 @@ pub enum Form<T = f64> {
     Share(Share<T>),
 }
 
-/// All path constraints of a gait.
-pub fn path_constraints(description: &Description) -> Vec<PathConstraint> {
-    path_constraints_of(description, &Limits::new(description))
+/// All path constraints of phase `k` of a gait.
+pub fn path_constraints(description: &Description, k: usize) -> Vec<PathConstraint> {
+    path_constraints_of(description, &Limits::new(description), k)
 }
 
 /// The same with limits that are numbers of any kind; units are the description's.
-pub fn path_constraints_of<T: Scalar>(description: &Description, limits: &Limits<T>) -> Vec<PathConstraint<T>> {
-    let y = Quantities::new(description);
+pub fn path_constraints_of<T: Scalar>(
+    description: &Description,
+    limits: &Limits<T>,
+    k: usize,
+) -> Vec<PathConstraint<T>> {
+    let mode = description.phases[k].mode;
+    let y = Quantities::new(description, mode);
     let mut list = actuator::constraints(description, limits, &y);
-    list.extend(reaction::constraints(description, limits, &y));
-    list.push(swing::constraint(description, limits, &y));
+    if mode.stance().is_some() {
+        list.extend(reaction::constraints(description, limits, &y));
+    }
+    list.extend(swing::constraints(description, limits, &y, &swings(description, k)));
     list.extend(ground::constraints(description, limits, &y));
     list.extend(range::constraints(description, limits, &y));
-    list.extend(sharing::constraints(description, limits, &y));
+    if mode.stance().is_some() {
+        list.extend(sharing::constraints(description, limits, &y));
+    }
     list
 }
 

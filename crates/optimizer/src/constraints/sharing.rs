@@ -14,7 +14,7 @@
 
 use super::{Form, Limits, PathConstraint};
 use crate::instant::{Quantities, Shared};
-use piaffe_model::{Description, HalfSteps, Leg, Limit};
+use piaffe_model::{Description, Leg, Limit, Then};
 use piaffe_number::{Dual, Scalar};
 
 /// Mounts nearer than this share of a leg are at one place.
@@ -39,7 +39,7 @@ pub fn obstacle(d: &Description) -> Option<String> {
     if !d.lateral {
         return None;
     }
-    if d.half_steps == HalfSteps::Distinct {
+    if d.then == Then::Repeat {
         return Some(format!(
             "limits at each real leg need half steps that mirror each other; those of the {} do not",
             d.gait

@@ -6,7 +6,7 @@
 
 use crate::constraints::sharing::{Share, applies, torques};
 use crate::instant::Quantities;
-use piaffe_model::Description;
+use piaffe_model::{Description, Mode};
 use smallvec::SmallVec;
 
 /// The torque of a joint as a function of an instant's quantities, and its rate.
@@ -30,11 +30,11 @@ enum Torque {
 pub type Partials = SmallVec<[(usize, f64); 12]>;
 
 impl Drive {
-    /// All of a gait. Real legs that swing do the same, so that the virtual leg's joints stand for them.
-    pub fn all(d: &Description) -> Vec<Drive> {
-        let y = Quantities::new(d);
+    /// All of a mode of a gait. Real legs that swing do the same, so that the virtual leg's joints stand for them.
+    pub fn all(d: &Description, mode: Mode) -> Vec<Drive> {
+        let y = Quantities::new(d, mode);
         let of_virtual = |j: usize| Drive { torque: Torque::Virtual(y.torque(j)), rate: y.rate(j), sharing: 1.0 };
-        if !applies(d) {
+        if mode == Mode::Flight || !applies(d) {
             return (0..d.joints()).map(of_virtual).collect();
         }
         let leg = &d.legs[0];

@@ -5,10 +5,10 @@
 //! simple, and its gradient is exact: a root's motion does not change the integral to first order.
 
 use super::{Integral, Kink};
+use crate::flow::Mesh;
 use crate::instant::Instants;
 use crate::lgl::NODES;
 use crate::polynomial::{Roots, evaluate, roots};
-use crate::stance::Mesh;
 
 pub fn integrate(mesh: &Mesh, instants: &Instants, integral: &mut Integral) {
     let share = 1.0 / mesh.elements as f64;

@@ -6,12 +6,12 @@ mod torque;
 
 pub use drive::Drive;
 
+use crate::flow::Mesh;
 use crate::instant::Instants;
 use crate::lgl::NODES;
-use crate::stance::Mesh;
 use drive::Partials;
-use piaffe_model::Description;
 use piaffe_model::motion::Criterion;
+use piaffe_model::{Description, Mode};
 
 /// Integral over s ∈ [0, 1] of a criterion's integrand, and its partial derivatives.
 #[derive(Clone, Debug)]
@@ -29,8 +29,8 @@ pub struct Integral {
 
 impl Integral {
     /// Room for the integral of any criterion over a mesh.
-    pub fn new(description: &Description, mesh: &Mesh) -> Integral {
-        let drives = Drive::all(description);
+    pub fn new(description: &Description, mode: Mode, mesh: &Mesh) -> Integral {
+        let drives = Drive::all(description, mode);
         let nodes = mesh.elements * NODES;
         let most = drives.iter().map(Drive::most).fold((0, 0), |sum, (a, b)| (sum.0 + a, sum.1 + b));
         Integral {
@@ -68,7 +68,7 @@ pub struct Kink {
     pub slope: f64,
 }
 
-/// Integral of the integrand of `criterion` over one half step, per unit of s (multiply by T).
+/// Integral of the integrand of `criterion` over one phase, per unit of s (multiply by T).
 ///
 /// `smoothing` (W) rounds the kinks of |power| off, as √(power² + smoothing²) − smoothing; 0 for the criterion itself.
 pub fn integrate(criterion: Criterion, smoothing: f64, mesh: &Mesh, instants: &Instants, integral: &mut Integral) {

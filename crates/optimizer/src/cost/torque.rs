@@ -1,8 +1,8 @@
 //! C1 (eq. 13): Σ Γj² by the quadrature of the collocation nodes.
 
 use super::Integral;
+use crate::flow::Mesh;
 use crate::instant::Instants;
-use crate::stance::Mesh;
 
 pub fn integrate(mesh: &Mesh, instants: &Instants, integral: &mut Integral) {
     for (node, weight) in mesh.weights.iter().copied().enumerate() {

@@ -23,6 +23,9 @@ pub struct Dip {
 /// Minima of a constraint in an element nearer than this (share of the element) are one.
 const SAME: f64 = 0.1;
 
+/// A curve that bends by less than this share of its values is flat: what minimum it has is one of rounding.
+const FLAT: f64 = 1e-12;
+
 impl Dip {
     /// Whether it is the same dip, at another time perhaps.
     pub fn is(&self, other: &Dip) -> bool {
@@ -58,7 +61,8 @@ impl Lowest {
         let slope = derivative(&quartic, &mut buffer);
         let mut stationary = Roots::new();
         roots(slope, &mut stationary);
-        let inside = stationary.into_iter().filter(|(_, second)| *second > 0.0);
+        let size = values.iter().fold(0.0f64, |most, value| most.max(value.abs()));
+        let inside = stationary.into_iter().filter(|(_, second)| *second > FLAT * size);
         let start = (evaluate(slope, 0.0) >= 0.0).then_some((0.0, f64::INFINITY));
         let end = (evaluate(slope, 1.0) <= 0.0).then_some((1.0, f64::INFINITY));
         let distance = |(at, _): &(f64, f64)| (at - from).abs();
@@ -97,6 +101,13 @@ mod tests {
         let lobatto = Lobatto::new();
         let lowest = Lowest::of(&lobatto, &lobatto.nodes.map(|s| 1.0 - s), 0.3);
         assert!(lowest.at == 1.0 && lowest.value.abs() < 1e-14 && lowest.curvature == f64::INFINITY);
+    }
+
+    #[test]
+    fn what_is_constant_has_no_curvature() {
+        let lobatto = Lobatto::new();
+        let lowest = Lowest::of(&lobatto, &lobatto.nodes.map(|s| 0.3 + 1e-16 * (9.0 * s).sin()), 0.4);
+        assert!(lowest.curvature == f64::INFINITY && (lowest.value - 0.3).abs() < 1e-14);
     }
 
     #[test]

@@ -1,33 +1,37 @@
 //! Θ → the whole periodic motion: torques, reactions, criterion, every constraint, exact derivatives (§5).
 //!
-//! Variables, per half step that defines the gait: Q_f, β_f, Q̇_f, β̇_f, interior values of Q, T. The
-//! initial state of a half step follows from the final state of the one before: same configuration,
-//! velocities after the impact, legs renamed where half steps mirror each other (eq. 16, 18, 19).
-//! Equalities: β̇ and β close the cycle (eq. 23, 24; the former as σ), the swing foot lands, and the
+//! Variables, per phase of the gait: Q_f, β_f, Q̇_f, β̇_f, interior values of Q, T. The
+//! initial state of a phase follows from the final state of the one before: same configuration,
+//! velocities after the impact if there is one, legs renamed where the gait mirrors itself (eq. 16, 18, 19); and in flight the mass
+//! centre's parabola. Equalities: β̇ and β close the cycle (eq. 23, 24; the former as σ), feet land where they shall, and the
 //! mean speed is the given one.
 //!
-//! `phase` is one half step, `dip` a constraint between its nodes, `still` a joint that it holds, `problem` the nonlinear program, `hessian` its
-//! second derivatives.
+//! `phase` is one phase, `crossing` how it ends, `dip` a constraint between its nodes, `still` a joint that it holds, `rows` which
+//! equation and which limit is which row, `problem` the nonlinear program, `hessian` its second derivatives.
 
+mod crossing;
 mod dip;
 mod hessian;
 mod phase;
 mod problem;
+mod rows;
 mod sample;
 mod still;
 
-use crate::constraints::{ImpactConstraints, PathConstraint, path_constraints};
+use crate::constraints::PathConstraint;
 use crate::cost::{Integral, integrate};
+use crate::flow::Undefined;
 use crate::instant::Glance;
 use crate::lgl::NODES;
-use crate::stance::Undefined;
 use dip::Dip;
 use hessian::Workspace;
 use phase::Phase;
 use piaffe_model::motion::{Costs, Criterion, HalfStep, Motion};
 use piaffe_model::units::Units;
-use piaffe_model::{Description, FORWARD, Gait, HalfSteps, Limit};
-pub use problem::{CLOSURE, Place};
+use piaffe_model::{Description, Gait, Limit};
+pub use problem::Place;
+pub use rows::Equation;
+use rows::Rows;
 pub use sample::Sample;
 pub use still::{AT_REST, Still};
 
@@ -66,11 +70,12 @@ pub struct Cycle<'a> {
     units: Units,
     variables: Variables,
     phases: Vec<Phase>,
-    path: Vec<PathConstraint>,
-    impact: ImpactConstraints,
+    rows: Rows,
     /// Held joints are held by equations; else by what their power costs.
     by_equations: bool,
-    /// Forward travel in all half steps, m, and how long they take, s.
+    /// No accelerations: as many zeros as q has entries.
+    still: Vec<f64>,
+    /// Forward travel in all phases, m, and how long they take, s.
     travel: f64,
     duration: f64,
 
@@ -103,7 +108,7 @@ impl Variables {
             prescribed: d.prescribed(),
             unactuated: d.unactuated,
             interior: d.polynomial_order - 3,
-            phases: d.phases(),
+            phases: d.phases.len(),
         }
     }
 
@@ -176,8 +181,8 @@ impl<'a> Cycle<'a> {
     pub fn with_elements(gait: &'a dyn Gait, criterion: Criterion, speed: f64, elements: usize) -> Cycle<'a> {
         let d = gait.description();
         let variables = Variables::new(d);
-        let phases: Vec<Phase> = (0..d.phases()).map(|k| Phase::new(d, stance_leg(d, k), elements)).collect();
-        let impact = ImpactConstraints::new(d);
+        let phases: Vec<Phase> = (0..d.phases.len()).map(|k| Phase::new(d, k, elements)).collect();
+        let rows = Rows::new(d, &phases, &[]);
         let n = variables.total();
         Cycle {
             gait,
@@ -190,14 +195,14 @@ impl<'a> Cycle<'a> {
             cost_gradient: vec![0.0; n],
             duration_gradient: vec![0.0; n],
             travel_gradient: vec![0.0; n],
-            equality_rows: vec![0.0; n * problem::equalities(d)],
-            impact_rows: vec![0.0; n * d.phases() * impact.count()],
-            workspace: Workspace::new(d, &variables, &phases[0]),
+            equality_rows: vec![0.0; n * rows.equations.len()],
+            impact_rows: vec![0.0; n * rows.impacts()],
+            workspace: Workspace::new(d, &variables, &phases),
             variables,
             phases,
-            path: path_constraints(d),
-            impact,
+            rows,
             by_equations: true,
+            still: vec![0.0; d.orientations()],
             travel: 0.0,
             duration: 0.0,
         }
@@ -263,9 +268,9 @@ impl<'a> Cycle<'a> {
         self.phases[phase].mesh.nodes[node].0
     }
 
-    /// All path constraints of an instant.
-    pub fn path(&self) -> &[PathConstraint] {
-        &self.path
+    /// All path constraints of an instant of a phase.
+    pub fn path(&self, phase: usize) -> &[PathConstraint] {
+        &self.phases[phase].path
     }
 
     /// The quantities of a node in the last simulated motion.
@@ -285,7 +290,7 @@ impl<'a> Cycle<'a> {
     /// through them.
     pub fn quartic(&self, phase: usize, constraint: usize, element: usize) -> [[f64; NODES]; 2] {
         let p = &self.phases[phase];
-        let values = p.in_element(&self.path[constraint], element);
+        let values = p.in_element(&p.path[constraint], element);
         [values, p.mesh.lobatto.interpolate(&values)]
     }
 
@@ -313,18 +318,21 @@ impl<'a> Cycle<'a> {
         let p = &mut self.phases[phase];
         let element = p.mesh.element(s);
         let from = s * p.mesh.elements as f64 - element as f64;
-        let lowest = p.lowest(&self.path[constraint], element, from);
+        let lowest = p.lowest(&p.path[constraint], element, from);
         let dip = Dip { constraint, element, offset: value - lowest.value, lowest };
         match p.dips.iter_mut().find(|known| known.is(&dip)) {
             Some(known) => *known = dip,
-            None => p.dips.push(dip),
+            None => {
+                p.dips.push(dip);
+                self.count_rows();
+            }
         }
     }
 
     /// Values of the rows between nodes in the last simulated motion (scaled), per half step.
     pub fn dip_values(&self) -> Vec<Vec<f64>> {
         let value =
-            |p: &Phase, dip: &Dip| p.lowest(&self.path[dip.constraint], dip.element, dip.lowest.at).value + dip.offset;
+            |p: &Phase, dip: &Dip| p.lowest(&p.path[dip.constraint], dip.element, dip.lowest.at).value + dip.offset;
         self.phases.iter().map(|p| p.dips.iter().map(|dip| value(p, dip)).collect()).collect()
     }
 
@@ -337,11 +345,11 @@ impl<'a> Cycle<'a> {
         if self.phases[phase].dips.is_empty() {
             return Ok(());
         }
-        let mut glance = Glance::new(self.description(), self.stance_leg(phase));
+        let mut glance = Glance::new(self.description(), phase);
         for k in 0..self.phases[phase].dips.len() {
             let p = &self.phases[phase];
             let dip = &p.dips[k];
-            let constraint = &self.path[dip.constraint];
+            let constraint = &p.path[dip.constraint];
             let lowest = p.lowest(constraint, dip.element, dip.lowest.at);
             p.glance(self.gait, (dip.element as f64 + lowest.at) / p.mesh.elements as f64, &mut glance)?;
             let offset = constraint.value(&glance.values) - lowest.value;
@@ -362,35 +370,70 @@ impl<'a> Cycle<'a> {
     /// If the equations admit no such motion.
     pub fn simulate(&mut self, theta: &[f64]) -> Result<(), Undefined> {
         let d = self.description();
-        let own = |k: usize| &theta[k * self.variables.per_phase()..][..self.variables.per_phase()];
-        for (k, phase) in self.phases.iter_mut().enumerate() {
-            phase.end(self.gait, &self.variables, own(k));
+        let per_phase = self.variables.per_phase();
+        let own = |k: usize| &theta[k * per_phase..][..per_phase];
+        // In flight the end also depends on where the parabola has begun, which the phases before tell.
+        for k in self.stances().chain(self.flights()) {
+            let centre = match self.parabola(k) {
+                Some((_, [forward, up])) => [forward, up - d.gravity * own(k)[self.variables.duration()]],
+                None => [0.0; 2],
+            };
+            self.phases[k].end(self.gait, &self.variables, own(k), centre, &self.still);
         }
         (self.travel, self.duration) = (0.0, 0.0);
         for k in 0..self.phases.len() {
             let before = self.before(k);
             for row in 0..d.orientations() {
-                let (from, sign) = renamed(d, row);
-                let (q, qd) = (self.phases[before].q_end[from], self.phases[before].qd_plus()[from]);
+                let (from, sign) = d.renamed(before, row);
+                let b = &self.phases[before];
+                let (q, qd) = (b.q_end[from], b.crossing.qd_plus().unwrap_or(&b.qd_end)[from]);
                 self.phases[k].q_start[row] = sign * q;
                 self.phases[k].qd_start[row] = sign * qd;
             }
+            let parabola = self.parabola(k).unwrap_or_default();
             let phase = &mut self.phases[k];
-            phase.set_parameters(self.gait, &self.variables, own(k));
+            phase.set_parameters(self.gait, &self.variables, theta, parabola);
             let t = phase.duration();
             if t.is_nan() || t < SHORTEST * self.units.time {
                 return Err(Undefined::NotFinite);
             }
-            phase.stance.integrate(self.gait, phase.leg, &phase.mesh, &phase.parameters)?;
-            phase.instants.evaluate(self.gait, phase.leg, &phase.mesh, &phase.stance, &phase.parameters);
+            phase.flow.integrate(self.gait, phase.mode, &phase.mesh, &phase.parameters)?;
+            phase.instants.evaluate(self.gait, &phase.mesh, &phase.flow, &phase.parameters);
             let smoothing = self.smoothing * self.units.power();
             integrate(self.criterion, smoothing, &phase.mesh, &phase.instants, &mut phase.cost);
-            let x = |node: usize| phase.instants.platform(node)[FORWARD];
+            let x = |node: usize| phase.instants.platform_x(&phase.mesh, &phase.parameters, node);
             phase.travel = x(phase.last()) - x(0);
             self.travel += phase.travel;
             self.duration += t;
         }
         Ok(())
+    }
+
+    /// Phases on a foot, and those in flight.
+    fn stances(&self) -> impl Iterator<Item = usize> + use<> {
+        self.of_modes(false)
+    }
+
+    fn flights(&self) -> impl Iterator<Item = usize> + use<> {
+        self.of_modes(true)
+    }
+
+    fn of_modes(&self, flies: bool) -> impl Iterator<Item = usize> + use<> {
+        let phases: smallvec::SmallVec<[usize; 8]> =
+            (0..self.phases.len()).filter(|k| self.phases[*k].layout.flies() == flies).collect();
+        phases.into_iter()
+    }
+
+    /// Height and velocity of the mass centre at the beginning of a flight, from the take-off before it.
+    fn parabola(&self, k: usize) -> Option<(f64, [f64; 2])> {
+        self.phases[k].layout.flies().then(|| self.phases[self.before(k)].crossing.parabola())
+    }
+
+    /// Builds the table of rows anew.
+    fn count_rows(&mut self) {
+        let holding: Vec<Equation> = self.holding().collect();
+        self.rows = Rows::new(self.description(), &self.phases, &holding);
+        self.equality_rows.resize(self.rows.equations.len() * self.dimension(), 0.0);
     }
 
     /// Partial derivatives of the objective in the quantities of the nodes of a half step: node, quantity, derivative.
@@ -442,7 +485,7 @@ impl<'a> Cycle<'a> {
         let of = |criterion| {
             let mut sum = 0.0;
             for p in &self.phases {
-                let mut integral = Integral::new(d, &p.mesh);
+                let mut integral = Integral::new(d, p.mode, &p.mesh);
                 integrate(criterion, 0.0, &p.mesh, &p.instants, &mut integral);
                 sum += p.duration() * integral.value;
             }
@@ -487,20 +530,4 @@ pub fn theta(motion: &Motion) -> Vec<f64> {
         theta.push(h.duration);
     }
     theta
-}
-
-/// Leg that half step `k` stands on.
-pub(crate) fn stance_leg(d: &Description, k: usize) -> usize {
-    match d.half_steps {
-        HalfSteps::Mirrored => 0,
-        HalfSteps::Distinct => k,
-    }
-}
-
-/// Where coordinate `k` comes from after a half step: index and sign.
-pub(crate) fn renamed(d: &Description, k: usize) -> (usize, f64) {
-    match d.half_steps {
-        HalfSteps::Mirrored => d.swapped(k),
-        HalfSteps::Distinct => (k, 1.0),
-    }
 }

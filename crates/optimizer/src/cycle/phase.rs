@@ -1,43 +1,49 @@
-//! One half step that defines the gait, and how its parameters depend on Θ.
+//! One phase of the gait, and how its parameters depend on Θ.
 
 use super::Variables;
+use super::crossing::Crossing;
 use super::dip::{Dip, Lowest};
-use crate::constraints::PathConstraint;
+use crate::constraints::{ImpactConstraints, PathConstraint, path_constraints};
 use crate::cost::Integral;
+use crate::flow::{Fall, Flow, Layout, Mesh, Undefined};
 use crate::instant::{Glance, Instants};
 use crate::lgl::NODES;
-use crate::stance::{Layout, Mesh, Stance, Undefined};
-use piaffe_model::shape::{Block, Shapes};
+use piaffe_model::shape::ModeShapes;
 use piaffe_model::units::Units;
-use piaffe_model::{Description, Gait, UP};
+use piaffe_model::{Description, FORWARD, Gait, Mode, UP};
 
-/// State of a half step: what the last simulation left, and the derivatives of the last linearization.
+/// State of a phase: what the last simulation left, and the derivatives of the last linearization.
 pub struct Phase {
-    /// Stance leg.
-    pub leg: usize,
-    pub shapes: &'static Shapes,
+    /// Which of the gait's.
+    index: usize,
+    pub mode: Mode,
+    pub shapes: &'static ModeShapes,
     pub mesh: Mesh,
-    pub stance: Stance,
+    pub flow: Flow,
     pub instants: Instants,
     pub layout: Layout,
-    /// Local parameters: see `stance`.
+    /// Local parameters: see `flow`.
     pub parameters: Vec<f64>,
     pub cost: Integral,
+    /// Constraints at its instants.
+    pub path: Vec<PathConstraint>,
     /// Constraints imposed between nodes.
     pub dips: Vec<Dip>,
     /// Joints that are held still.
     pub still: Vec<usize>,
-    /// Configuration and velocity at its start, after the impact.
+    /// Configuration and velocity at its start, after the transition.
     pub q_start: Vec<f64>,
     pub qd_start: Vec<f64>,
-    /// Wanted configuration and velocity at its end, before the impact.
+    /// Wanted configuration and velocity at its end, before the transition.
     pub q_end: Vec<f64>,
     pub qd_end: Vec<f64>,
-    /// `touchdown` and `placement` kernels at the end.
-    pub touchdown: Vec<f64>,
+    /// How it ends, and what is asked of the impact if there is one.
+    pub crossing: Crossing,
+    pub impact: Option<ImpactConstraints>,
+    /// `placement` kernel at the wanted end.
     pub placement: Vec<f64>,
-    /// What the touchdown gives beside q̇⁺, in the order of the weights of `touchdown_curvature`.
-    pub impact: Vec<f64>,
+    /// The foot that lands at its end, as kernels count those in the air.
+    pub landing_foot: Option<usize>,
     /// `momentum` kernel: σ and its gradient in (q, q̇), at the start and at the wanted end.
     pub momentum_start: Vec<f64>,
     pub momentum_end: Vec<f64>,
@@ -55,30 +61,36 @@ pub struct Phase {
 }
 
 impl Phase {
-    pub fn new(d: &Description, leg: usize, elements: usize) -> Phase {
+    /// Phase `k` of a gait.
+    pub fn new(d: &Description, k: usize, elements: usize) -> Phase {
+        let mode = d.phases[k].mode;
         let mesh = Mesh::new(elements, d.polynomial_order);
-        let layout = Layout::new(d, &mesh.basis);
-        let (nq, shapes) = (d.orientations(), d.shapes);
+        let layout = Layout::new(d, k, &mesh.basis);
+        let (nq, shapes) = (d.orientations(), d.shape(mode));
         let n = Variables::new(d).total();
-        let instants = Instants::new(d, &mesh);
+        let instants = Instants::new(d, &mesh, k);
+        let lands = d.transition(k).lands();
         let z = |count: usize| vec![0.0; count];
         Phase {
-            leg,
+            index: k,
+            mode,
             shapes,
-            stance: Stance::new(d, &mesh, leg),
+            flow: Flow::new(d, &mesh, k),
             linearized: instants.values.clone(),
+            landing_foot: mode.swinging().position(|leg| lands == Some(leg)),
             instants,
             layout,
             parameters: z(layout.len()),
-            cost: Integral::new(d, &mesh),
+            cost: Integral::new(d, mode, &mesh),
+            path: path_constraints(d, k),
             dips: Vec::new(),
             still: Vec::new(),
             q_start: z(nq),
             qd_start: z(nq),
             q_end: z(nq),
             qd_end: z(nq),
-            touchdown: shapes.touchdown.zeros(),
-            impact: shapes.touchdown_curvature.outputs.zeros(),
+            crossing: Crossing::new(d, k, n),
+            impact: ImpactConstraints::new(d, d.transition(k)),
             placement: shapes.placement.zeros(),
             momentum_start: shapes.momentum.zeros(),
             momentum_end: shapes.momentum.zeros(),
@@ -100,19 +112,24 @@ impl Phase {
         self.mesh.nodes.len() - 1
     }
 
+    /// The mass centre's parabola, in flight.
+    pub fn fall(&self, d: &Description) -> Option<Fall> {
+        Fall::new(&self.layout, d.gravity, &self.parameters)
+    }
+
     /// Looks at share `s`, between the nodes, of the last simulated motion.
     pub fn glance(&self, gait: &dyn Gait, s: f64, glance: &mut Glance) -> Result<(), Undefined> {
-        glance.at(gait, self.leg, &self.mesh, &self.stance, &self.parameters, s)
+        glance.at(gait, &self.mesh, &self.flow, &self.layout, &self.parameters, s)
     }
 
     /// What a mesh twice as fine changes in β and β̇ at the end of the last simulated motion, in the robot's units.
     pub fn mesh_error(&self, gait: &dyn Gait, units: &Units) -> Result<f64, Undefined> {
         let d = gait.description();
         let mesh = Mesh::new(2 * self.mesh.elements, d.polynomial_order);
-        let mut finer = Stance::new(d, &mesh, self.leg);
-        finer.integrate(gait, self.leg, &mesh, &self.parameters)?;
+        let mut finer = Flow::new(d, &mesh, self.index);
+        finer.integrate(gait, self.mode, &mesh, &self.parameters)?;
         let (here, there) = (self.last(), mesh.nodes.len() - 1);
-        let change = |of: fn(&Stance) -> &[f64]| (of(&finer)[there] - of(&self.stance)[here]).abs();
+        let change = |of: fn(&Flow) -> &[f64]| (of(&finer)[there] - of(&self.flow)[here]).abs();
         Ok(change(|s| &s.beta).max(change(|s| &s.betad) / units.rate()))
     }
 
@@ -133,65 +150,31 @@ impl Phase {
         &self.linearized[node * count..][..count]
     }
 
-    /// q̇⁺ after the impact at the end, before the legs swap names.
-    pub fn qd_plus(&self) -> &[f64] {
-        self.shapes.touchdown.qd_plus.of(&self.touchdown)
+    /// Height of a foot at the wanted end, m.
+    pub fn landing_height(&self, d: &Description, foot: usize) -> f64 {
+        let fallen = self.fall(d).map_or(0.0, |fall| fall.height(1.0));
+        self.shapes.placement.swing.of(&self.placement)[self.instants.up(foot)] + fallen
     }
 
-    /// ∂/∂(q, q̇⁻) of an entry of q̇⁺.
-    pub fn qd_plus_row(&self, k: usize) -> &[f64] {
-        self.shapes.touchdown.qd_plus_w.row(&self.touchdown, k)
+    /// ∂(its height from the stance foot, or in flight from the mass centre)/∂q.
+    pub fn landing_gradient(&self, foot: usize) -> &[f64] {
+        self.shapes.placement.swing_q.row(&self.placement, self.instants.up(foot))
     }
 
-    /// ∂/∂(q, q̇⁻) of an entry of `impact`.
-    pub fn impact_row(&self, i: usize) -> &[f64] {
-        let found = self.of_impact().into_iter().find(|[to, ..]| to.range().contains(&i));
-        let [to, _, rows] = found.unwrap_or([Block::NONE; 3]);
-        rows.row(&self.touchdown, i - to.range().start)
-    }
-
-    /// Where in `impact` something of the touchdown stands, where in `touchdown`, and where its gradients do there.
-    fn of_impact(&self) -> [[Block; 3]; 5] {
-        let (to, from) = (&self.shapes.touchdown_curvature.outputs, &self.shapes.touchdown);
-        [
-            [to.impulse, from.impulse, from.impulse_w],
-            [to.leaving, from.leaving, from.leaving_w],
-            [to.landing, from.landing, from.landing_w],
-            [to.couple, from.couple, from.couple_w],
-            [to.pitch, from.pitch, from.pitch_w],
-        ]
-    }
-
-    fn gather_impact(&mut self) {
-        for [to, from, _] in self.of_impact() {
-            to.of_mut(&mut self.impact).copy_from_slice(from.of(&self.touchdown));
-        }
-    }
-
-    /// Height of the swing foot at the wanted end, m.
-    pub fn landing_height(&self) -> f64 {
-        self.shapes.placement.swing.of(&self.placement)[UP]
-    }
-
-    /// ∂(vertical position of the swing foot)/∂q at the wanted end.
-    pub fn landing_gradient(&self) -> &[f64] {
-        self.shapes.placement.swing_q.row(&self.placement, UP)
-    }
-
-    /// Evaluates what depends on the wanted end alone: the impact there, the foot's height, σ.
-    pub fn end(&mut self, gait: &dyn Gait, variables: &Variables, own: &[f64]) {
+    /// Evaluates what depends on the wanted end alone, and in flight on the parabola: the transition there, the foot's height, σ.
+    pub fn end(&mut self, gait: &dyn Gait, variables: &Variables, own: &[f64], centre: [f64; 2], still: &[f64]) {
         variables.end_state(own, &mut self.q_end, &mut self.qd_end);
-        gait.touchdown(1 - self.leg, &self.q_end, &self.qd_end, &mut self.touchdown);
-        self.gather_impact();
-        gait.placement(self.leg, &self.q_end, &mut self.placement);
-        gait.momentum(self.leg, &self.q_end, &self.qd_end, &mut self.momentum_end);
+        self.crossing.evaluate(gait, &self.q_end, &self.qd_end, centre, still);
+        gait.placement(self.mode, &self.q_end, &mut self.placement);
+        gait.momentum(self.mode, &self.q_end, &self.qd_end, &mut self.momentum_end);
     }
 
-    /// Local parameters from the half step's own variables and its start.
-    pub fn set_parameters(&mut self, gait: &dyn Gait, variables: &Variables, own: &[f64]) {
+    /// Local parameters from Θ, the phase's start and the parabola that begins there in flight.
+    pub fn set_parameters(&mut self, gait: &dyn Gait, variables: &Variables, theta: &[f64], parabola: (f64, [f64; 2])) {
         let d = gait.description();
-        gait.momentum(self.leg, &self.q_start, &self.qd_start, &mut self.momentum_start);
+        gait.momentum(self.mode, &self.q_start, &self.qd_start, &mut self.momentum_start);
         let layout = self.layout;
+        let own = &theta[self.index * variables.per_phase()..][..variables.per_phase()];
         for j in 0..layout.prescribed {
             let index = d.prescribed_index(j);
             let p = &mut self.parameters[layout.joint(j, 0)..][..layout.per_joint];
@@ -206,29 +189,43 @@ impl Phase {
         self.parameters[layout.duration()] = own[variables.duration()];
         self.parameters[layout.beta()] = self.q_start[d.unactuated];
         self.parameters[layout.sigma()] = self.shapes.momentum.sigma.value(&self.momentum_start);
+        if layout.flies() {
+            let (height, velocity) = parabola;
+            self.parameters[layout.centre_height()] = height;
+            [FORWARD, UP].iter().for_each(|c| self.parameters[layout.centre_velocity(*c)] = velocity[*c]);
+        }
+        for (k, at) in layout.others() {
+            self.parameters[at] = theta[k * variables.per_phase() + variables.duration()];
+        }
     }
 
     /// Derivatives in the local parameters.
-    pub fn differentiate(&mut self, gait: &dyn Gait, path: &[PathConstraint]) {
+    pub fn differentiate(&mut self, gait: &dyn Gait) {
         let d = gait.description();
-        self.stance.differentiate(gait, self.leg, &self.mesh, &self.parameters);
-        self.instants.differentiate(d, &self.mesh, &self.stance, &self.parameters);
+        self.flow.differentiate(gait, self.mode, &self.mesh, &self.parameters);
+        self.instants.differentiate(d, &self.mesh, &self.flow, &self.parameters);
         self.linearized.copy_from_slice(&self.instants.values);
         for k in 0..self.dips.len() {
             let Dip { constraint, element, ref lowest, .. } = self.dips[k];
-            self.dips[k].lowest = self.lowest(&path[constraint], element, lowest.at);
+            self.dips[k].lowest = self.lowest(&self.path[constraint], element, lowest.at);
         }
-        let last = self.last();
-        self.instants.platform_x_gradient(d, &self.stance, 0, &mut self.scratch);
-        self.instants.platform_x_gradient(d, &self.stance, last, &mut self.travel_p);
+        let (instants, flow, parameters, last) = (&self.instants, &self.flow, &self.parameters, self.last());
+        instants.platform_x_gradient(d, &self.mesh, flow, parameters, 0, &mut self.scratch);
+        instants.platform_x_gradient(d, &self.mesh, flow, parameters, last, &mut self.travel_p);
         for (end, start) in self.travel_p.iter_mut().zip(&self.scratch) {
             *end -= start;
         }
     }
 
-    /// ∂parameters/∂Θ, once `start_by_theta` is known; `own` is where this half step's variables begin.
-    pub fn differentiate_parameters(&mut self, d: &Description, variables: &Variables, own: usize) {
-        let n = variables.total();
+    /// ∂parameters/∂Θ, once `start_by_theta` is known. A flight needs the transition before it, and where the variables of that phase
+    /// begin.
+    pub fn differentiate_parameters(
+        &mut self,
+        d: &Description,
+        variables: &Variables,
+        before: Option<(&Crossing, usize)>,
+    ) {
+        let (n, own) = (variables.total(), self.index * variables.per_phase());
         let nq = d.orientations();
         let layout = self.layout;
         self.by_theta.fill(0.0);
@@ -249,6 +246,39 @@ impl Phase {
             for (s, c) in self.by_theta[row(layout.sigma())].iter_mut().zip(&self.start_by_theta[row(k)]) {
                 *s += gradient * c;
             }
+        }
+        if let Some((takeoff, first)) = before.filter(|_| layout.flies()) {
+            for (k, gradient) in takeoff.height_gradient().iter().enumerate() {
+                self.by_theta[layout.centre_height() * n + first + variables.q(k)] = *gradient;
+            }
+            for c in [FORWARD, UP] {
+                let (by_q, by_qd) = takeoff.velocity_gradient(c).split_at(nq);
+                for k in 0..nq {
+                    let row = &mut self.by_theta[row(layout.centre_velocity(c))];
+                    row[first + variables.q(k)] = by_q[k];
+                    row[first + variables.qd(k)] = by_qd[k];
+                }
+            }
+        }
+        for (k, at) in layout.others() {
+            self.by_theta[at * n + k * variables.per_phase() + variables.duration()] = 1.0;
+        }
+    }
+
+    /// The parabola's parameters of a landing: what the mass centre's velocity before it is as a function of Θ.
+    pub fn differentiate_centre(&mut self, d: &Description, n: usize) {
+        if !self.layout.flies() {
+            return;
+        }
+        for c in [FORWARD, UP] {
+            let (velocity, duration) = (self.layout.centre_velocity(c) * n, self.layout.duration() * n);
+            let by_theta = &self.by_theta;
+            self.crossing.set_centre_gradient(c, |row| {
+                row.copy_from_slice(&by_theta[velocity..velocity + n]);
+                if c == UP {
+                    row.iter_mut().zip(&by_theta[duration..]).for_each(|(slot, by)| *slot -= d.gravity * by);
+                }
+            });
         }
     }
 

@@ -11,7 +11,7 @@
 //! it is none, the way down tells which of the joints had better move: those whose rates it changes.
 
 use super::phase::Phase;
-use super::{Cycle, problem};
+use super::{Cycle, Equation};
 use crate::cost::Drive;
 use piaffe_model::motion::Criterion;
 use piaffe_sqp::dot;
@@ -59,18 +59,18 @@ impl Cycle<'_> {
         let d = self.description();
         for (k, phase) in self.phases.iter_mut().enumerate() {
             phase.still = joints.iter().filter(|s| s.phase == k).map(|s| s.joint).collect();
-            phase.cost.drives = Drive::all(d);
+            phase.cost.drives = Drive::all(d, phase.mode);
             let (still, y) = (&phase.still, phase.instants.quantities);
             phase.cost.drives.retain(|drive| !still.iter().any(|joint| drive.rate() == y.rate(*joint)));
         }
         self.by_equations = true;
-        let rows = problem::equalities(self.description()) + self.holding().count();
-        self.equality_rows.resize(rows * self.dimension(), 0.0);
+        self.count_rows();
     }
 
     /// Gives the equations up: that the held joints rest is left to what their power costs.
     pub fn let_go(&mut self) {
         self.by_equations = false;
+        self.count_rows();
     }
 
     /// Those of the held joints that a step in Θ from the linearized motion sets in motion.
@@ -86,13 +86,13 @@ impl Cycle<'_> {
         self.held().filter(|still| fastest(&self.phases[still.phase], still.joint) > limit).collect()
     }
 
-    /// The equations that hold joints: half step, joint, and the node at which its rate has to be zero.
-    pub(super) fn holding(&self) -> impl Iterator<Item = (usize, usize, usize)> + '_ {
+    /// The equations that hold joints: one at as many nodes as the rate has coefficients.
+    pub(super) fn holding(&self) -> impl Iterator<Item = Equation> + '_ {
         let instants = self.description().polynomial_order;
         let held = self.held().filter(|_| self.by_equations);
         held.flat_map(move |Still { phase, joint }| {
             let last = self.phases[phase].last();
-            (0..instants).map(move |m| (phase, joint, m * last / (instants - 1)))
+            (0..instants).map(move |m| Equation::Still { phase, joint, node: m * last / (instants - 1) })
         })
     }
 

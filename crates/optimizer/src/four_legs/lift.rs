@@ -7,7 +7,7 @@ use super::limits::{Affine, Limit, Limits};
 use super::margin::{Choice, best};
 use super::posture::{Legs, Posture};
 use super::shares::Shares;
-use crate::stance::Undefined;
+use crate::flow::Undefined;
 use crate::walk::{Moment, Point, Walk};
 use nalgebra::{DMatrix, DVector};
 use piaffe_model::Gait;
@@ -76,10 +76,10 @@ pub struct Lift<'a> {
     pub legs: Legs<'a>,
     /// In order of time.
     pub instants: Vec<Instant>,
-    /// At the end of each half step.
+    /// Where feet land.
     pub impacts: Vec<Impact>,
     /// s.
-    pub durations: [f64; 2],
+    pub durations: Vec<f64>,
     /// Forward travel in the step, m.
     pub travel: f64,
 }
@@ -101,33 +101,40 @@ impl<'a> Lift<'a> {
     pub fn at_rate(gait: &'a dyn Gait, motion: &Motion, rate: f64) -> Result<Lift<'a>, NotLifted> {
         let (ends, mut walk) = (Walk::even(gait, motion, 1)?, Walk::at_rate(gait, motion, rate)?);
         walk.moments.extend(ends.moments.into_iter().filter(|m| m.share == 1.0));
-        walk.moments.sort_by(|a, b| {
-            (a.half_step, a.time).partial_cmp(&(b.half_step, b.time)).unwrap_or(std::cmp::Ordering::Equal)
-        });
+        walk.moments
+            .sort_by(|a, b| (a.phase, a.time).partial_cmp(&(b.phase, b.time)).unwrap_or(std::cmp::Ordering::Equal));
         Lift::new(gait, &walk.moments, &walk)
     }
 
     fn new(gait: &'a dyn Gait, moments: &[Moment], walk: &Walk) -> Result<Lift<'a>, NotLifted> {
         let no_whole = || NotLifted::NoWhole { gait: gait.description().key.into() };
         let legs = Legs::new(gait).ok_or_else(no_whole)?;
-        let instants = moments.iter().map(|m| legs.support(m)).collect::<Result<_, _>>()?;
-        // The last moment of each half step.
-        let ends = |k: usize| moments.get(k + 1).is_none_or(|next| next.half_step != moments[k].half_step);
-        let impact = |k: usize| legs.impact(gait, &moments[k]);
-        let impacts = (0..moments.len()).filter(|k| ends(*k)).map(impact).collect::<Result<_, _>>()?;
-        Ok(Lift { legs, instants, impacts, durations: walk.half_steps.map(|h| h.duration), travel: walk.travel })
+        let supports = moments.iter().filter_map(|m| Some((m, m.mode.stance()?)));
+        let instants = supports.map(|(m, leg)| legs.support(m, leg)).collect::<Result<_, _>>()?;
+        // The last moment of each phase.
+        let ends = |k: usize| moments.get(k + 1).is_none_or(|next| next.phase != moments[k].phase);
+        let landings =
+            (0..moments.len()).filter(|k| ends(*k)).filter_map(|k| Some((&moments[k], moments[k].transition.lands()?)));
+        let impacts = landings.map(|(m, leg)| legs.impact(gait, m, leg)).collect::<Result<_, _>>()?;
+        Ok(Lift {
+            legs,
+            instants,
+            impacts,
+            durations: walk.phases.iter().map(|phase| phase.duration).collect(),
+            travel: walk.travel,
+        })
     }
 }
 
 impl Legs<'_> {
-    /// What the real legs do at a moment of the gait.
+    /// What the real legs do at a moment of the gait at which the virtual leg `leg` stands.
     ///
     /// # Errors
     /// If the cone program is not solved.
-    pub fn support(&self, m: &Moment) -> Result<Instant, NotLifted> {
+    pub fn support(&self, m: &Moment, leg: usize) -> Result<Instant, NotLifted> {
         let posture = self.posture(m);
         let equations = Equations::new(self.whole, &posture, self.description.leg_length());
-        let stance: Vec<usize> = self.members(m.stance).collect();
+        let stance: Vec<usize> = self.members(leg).collect();
         let (demand, columns) = (equations.demand(&posture.ud), equations.columns(&stance));
         let equal = self.equal(&posture, &stance, m.force);
         // The platform has no motors: its six equations are the reactions' alone.
@@ -165,7 +172,7 @@ impl Legs<'_> {
         let (lack, equal_lack) = (lack(&left.rows(0, PLATFORM).into_owned()), lack(&equal_lack));
         Ok(Instant {
             time: m.time,
-            half_step: m.half_step,
+            half_step: m.phase,
             reactions: self.spread(&posture, &stance, &reactions),
             posture,
             stance,
@@ -178,16 +185,15 @@ impl Legs<'_> {
         })
     }
 
-    /// What the real legs do at the impact that ends a half step, of which `m` is the last moment.
+    /// What the real legs do where the foot of `virtual_leg` lands; `m` is the last moment before.
     ///
     /// # Errors
     /// If the cone program is not solved.
-    pub fn impact(&self, gait: &dyn Gait, m: &Moment) -> Result<Impact, NotLifted> {
+    pub fn impact(&self, gait: &dyn Gait, m: &Moment, virtual_leg: usize) -> Result<Impact, NotLifted> {
         let d = self.description;
         let (nc, shape) = (d.positions(), &gait.description().shapes.impact);
         let posture = self.posture(m);
         let equations = Equations::new(self.whole, &posture, d.leg_length());
-        let virtual_leg = 1 - m.stance;
         let landing: Vec<usize> = self.members(virtual_leg).collect();
         let before = [&m.platform[1][..nc], &m.qd].concat();
         let mut out = shape.zeros();
@@ -212,7 +218,7 @@ impl Legs<'_> {
         let (lack, equal_lack) = (lack(&impulses), lack(&equal));
         Ok(Impact {
             time: m.time,
-            half_step: m.half_step,
+            half_step: m.phase,
             impulses: self.spread(&posture, &landing, &impulses),
             posture,
             change,

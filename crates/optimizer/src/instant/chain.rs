@@ -1,7 +1,7 @@
 //! From derivatives in the state of an instant to derivatives in the parameters of its half step.
 
 use super::Instants;
-use crate::stance::{Layout, Stance};
+use crate::flow::{Flow, Layout};
 use piaffe_model::Description;
 
 /// Derivatives in (q, q̇, q̈), by parts.
@@ -20,7 +20,7 @@ pub(super) struct Chain<'a> {
 }
 
 impl<'a> Chain<'a> {
-    pub(super) fn new(instants: &'a Instants, d: &'a Description, stance: &'a Stance, node: usize) -> Chain<'a> {
+    pub(super) fn new(instants: &'a Instants, d: &'a Description, stance: &'a Flow, node: usize) -> Chain<'a> {
         let layout = instants.layout;
         let np = layout.len();
         Chain {
@@ -48,9 +48,8 @@ impl<'a> Chain<'a> {
             let t = self.by_duration[j];
             by_duration += a * t[0] + b * t[1] + c * t[2];
         }
+        out[layout.duration()..].fill(0.0);
         out[layout.duration()] = by_duration;
-        out[layout.beta()] = 0.0;
-        out[layout.sigma()] = 0.0;
         let [a, b, c] = [at(0, beta), at(1, beta), at(2, beta)];
         match betadd_p {
             Some(betadd_p) => {

@@ -1,15 +1,18 @@
 //! A look at an instant between the nodes.
 
-use super::Quantities;
-use crate::stance::{Mesh, Stance, State, Undefined};
-use piaffe_model::shape::Shapes;
-use piaffe_model::{Description, Gait, UP};
+use super::{Quantities, durations};
+use crate::flow::{Fall, Flow, Layout, Mesh, State, Undefined};
+use crate::swing::{Swing, swings};
+use piaffe_model::shape::ModeShapes;
+use piaffe_model::{Description, FORWARD, Gait, Mode, UP};
 
 /// One instant between the nodes: the same quantities, without derivatives.
 #[derive(Clone, Debug)]
 pub struct Glance {
     quantities: Quantities,
-    shapes: &'static Shapes,
+    mode: Mode,
+    swings: Vec<Swing>,
+    shapes: &'static ModeShapes,
     pub state: State,
     pub qdd: Vec<f64>,
     /// Of all quantities.
@@ -18,60 +21,88 @@ pub struct Glance {
     placement: Vec<f64>,
     heights: Vec<f64>,
     sharing: Vec<f64>,
+    /// Positions from the stance foot, or in flight from below where the mass centre took off, m.
+    platform: Vec<f64>,
+    feet: Vec<f64>,
+    /// Of the robot's mass centre in flight, else zero, m/s.
+    pub centre_velocity: [f64; 2],
 }
 
 impl Glance {
-    /// At half steps on `leg`.
-    pub fn new(d: &Description, leg: usize) -> Glance {
-        let quantities = Quantities::new(d);
-        let shapes = d.shapes;
+    /// At instants of phase `k` of a gait.
+    pub fn new(d: &Description, k: usize) -> Glance {
+        let mode = d.phases[k].mode;
+        let (quantities, shapes) = (Quantities::new(d, mode), d.shape(mode));
         Glance {
             quantities,
+            mode,
+            swings: swings(d, k),
             shapes,
-            state: State::new(d, leg),
+            state: State::new(d, mode),
             qdd: vec![0.0; d.orientations()],
             values: vec![0.0; quantities.len()],
             inverse: shapes.inverse.zeros(),
             placement: shapes.placement.zeros(),
             heights: shapes.heights.zeros(),
             sharing: quantities.sharing(shapes).zeros(),
+            platform: vec![0.0; shapes.placement.p.len()],
+            feet: vec![0.0; shapes.placement.swing.len()],
+            centre_velocity: [0.0; 2],
         }
     }
 
-    /// Looks at `s` of an integrated half step, neither its beginning nor its end.
+    /// Looks at `s` of an integrated phase, neither its beginning nor its end.
     ///
     /// # Errors
-    /// As for [`Stance::integrate`].
+    /// As for [`Flow::integrate`].
     pub fn at(
         &mut self,
         gait: &dyn Gait,
-        leg: usize,
         mesh: &Mesh,
-        stance: &Stance,
+        flow: &Flow,
+        layout: &Layout,
         parameters: &[f64],
         s: f64,
     ) -> Result<(), Undefined> {
-        let (y, shapes) = (self.quantities, self.shapes);
-        stance.at(gait, leg, mesh, parameters, s, &mut self.state)?;
+        let (y, shapes, mode) = (self.quantities, self.shapes, self.mode);
+        flow.at(gait, mode, mesh, parameters, s, &mut self.state)?;
         let State { q, qd, prescribed: [.., accelerations], .. } = &self.state;
-        gait.inverse(leg, q, qd, accelerations, &mut self.inverse);
+        gait.inverse(mode, q, qd, accelerations, &mut self.inverse);
         let shape = &shapes.inverse;
         let [xdd, torques, force] = [shape.xdd, shape.gamma, shape.f].map(|block| block.of(&self.inverse));
         self.qdd.copy_from_slice(&xdd[xdd.len() - q.len()..]);
-        gait.placement(leg, q, &mut self.placement);
-        y.write(&mut self.values, [q, qd], [torques, force], shapes.placement.p.of(&self.placement)[UP]);
-        self.values[y.clearance()] = shapes.placement.swing.of(&self.placement)[UP] / (4.0 * s * (1.0 - s));
-        gait.heights(leg, q, &mut self.heights);
-        self.values[y.heights()].copy_from_slice(shapes.heights.heights.of(&self.heights));
+        gait.placement(mode, q, &mut self.placement);
+        self.platform.copy_from_slice(shapes.placement.p.of(&self.placement));
+        self.feet.copy_from_slice(shapes.placement.swing.of(&self.placement));
+        gait.heights(mode, q, &mut self.heights);
+        let components = self.platform.len();
+        let mut fallen = 0.0;
+        if let Some(fall) = Fall::new(layout, gait.description().gravity, parameters) {
+            fallen = fall.height(s);
+            self.centre_velocity = fall.velocity(s);
+            for place in self.platform.chunks_mut(components).chain(self.feet.chunks_mut(components)) {
+                place[FORWARD] += fall.advance(s);
+                place[UP] += fallen;
+            }
+        }
+        y.write(&mut self.values, [q, qd], [torques, force], self.platform[UP]);
+        let durations = durations(layout, parameters);
+        for (foot, swing) in self.swings.iter().enumerate() {
+            self.values[y.clearance(foot)] = self.feet[foot * components + UP] * swing.factor(&durations, s).value;
+        }
+        let heights = &mut self.values[y.heights()];
+        heights.copy_from_slice(shapes.heights.heights.of(&self.heights));
+        heights.iter_mut().for_each(|height| *height += fallen);
         if y.shared > 0 {
-            gait.sharing(leg, q, qd, &self.qdd, &mut self.sharing);
+            gait.sharing(mode, q, qd, &self.qdd, &mut self.sharing);
             y.write_shared(&mut self.values, shapes, &self.sharing);
         }
         Ok(())
     }
 
-    /// Positions of the platform's mass centre and of the swing foot, from the stance foot, m.
+    /// Positions of the platform's mass centre and of the feet in the air, one after the other; from the stance foot, or in flight
+    /// from the ground below where the mass centre took off, m.
     pub fn places(&self) -> [&[f64]; 2] {
-        [self.shapes.placement.p, self.shapes.placement.swing].map(|block| block.of(&self.placement))
+        [&self.platform, &self.feet]
     }
 }

@@ -1,26 +1,35 @@
-//! Everything that constraints and criteria look at, at each instant of a half step.
+//! Everything that constraints and criteria look at, at each instant of a phase.
 //!
 //! The *quantities* of an instant are the torques of all joints, the reaction, the joints' angles and
-//! rates, the swing foot's clearance, the platform's height and that of all that can be lowest; each with its gradient in the half step's parameters.
+//! rates, the clearances of the feet in the air, the platform's height and that of all that can be lowest; each with its gradient in the
+//! phase's parameters.
 
 mod chain;
 mod glance;
 mod quantities;
 
 pub use glance::Glance;
-pub use quantities::{Quantities, Shared, direction};
+pub use quantities::{Quantities, Shared};
 
-use crate::stance::{Layout, Mesh, Stance, basis_derivatives};
+use crate::flow::{Fall, Flow, Layout, Mesh, basis_derivatives};
+use crate::swing::{Factor, Of, Swing, swings};
 use chain::{Chain, parts};
-use piaffe_model::shape::Shapes;
-use piaffe_model::{Description, FORWARD, Gait, UP};
+use piaffe_model::shape::{ModeShapes, Takeoff};
+use piaffe_model::{Description, FORWARD, Gait, Mode, UP};
+use smallvec::SmallVec;
 
-/// The quantities at all nodes of a half step: values, and derivatives of the last linearization.
+/// The quantities at all nodes of a phase: values, and derivatives of the last linearization.
 #[derive(Clone, Debug)]
 pub struct Instants {
     pub quantities: Quantities,
-    shapes: &'static Shapes,
+    mode: Mode,
+    /// Of the feet in the air, in the order in which kernels give them.
+    pub swings: Vec<Swing>,
+    shapes: &'static ModeShapes,
+    takeoff_shape: Takeoff,
     layout: Layout,
+    components: usize,
+    gravity: f64,
     /// One row of quantities per node.
     pub values: Vec<f64>,
     /// q, q̇ and q̈, a row per node.
@@ -29,6 +38,8 @@ pub struct Instants {
     inverse: Vec<f64>,
     placement: Vec<f64>,
     swing: [Vec<f64>; 2],
+    /// Result of the `takeoff` kernel at the first node, of the foot that leaves there at rest.
+    takeoff: Vec<f64>,
     /// Results of the `heights` kernel, a row per node.
     heights: Vec<f64>,
     /// Results of the `sharing` kernel, a row per node; none if nothing shared is looked at.
@@ -41,16 +52,32 @@ pub struct Instants {
     pub basis: Vec<[f64; 3]>,
 }
 
+/// The durations that swings depend on, s: see [`Swing::factor`].
+pub fn durations(layout: &Layout, parameters: &[f64]) -> SmallVec<[f64; 4]> {
+    layout.durations().map(|at| parameters[at]).collect()
+}
+
 impl Instants {
-    pub fn new(description: &Description, mesh: &Mesh) -> Instants {
-        let quantities = Quantities::new(description);
-        let layout = Layout::new(description, &mesh.basis);
-        let (nq, shapes) = (description.orientations(), description.shapes);
+    /// Of phase `k` of a gait.
+    pub fn new(d: &Description, mesh: &Mesh, k: usize) -> Instants {
+        let mode = d.phases[k].mode;
+        let quantities = Quantities::new(d, mode);
+        let layout = Layout::new(d, k, &mesh.basis);
+        let swings = swings(d, k);
+        let (nq, shapes) = (d.orientations(), d.shape(mode));
         let n = mesh.nodes.len();
+        let leaves = swings.iter().any(Swing::begins_at_rest);
+        let takeoff_shape = if leaves { d.shapes.takeoff } else { Takeoff::NONE };
         Instants {
             quantities,
+            mode,
+            swings,
             shapes,
+            takeoff: takeoff_shape.zeros(),
+            takeoff_shape,
             layout,
+            components: d.positions(),
+            gravity: d.gravity,
             values: vec![0.0; n * quantities.len()],
             states: vec![0.0; n * 3 * nq],
             inverse: vec![0.0; n * shapes.inverse_jacobian.len],
@@ -96,7 +123,7 @@ impl Instants {
         [0, 1, 2].map(|order| &self.states[(3 * node + order) * nq..][..nq])
     }
 
-    /// Position of the platform's mass centre from the stance foot at a node, m.
+    /// Position of the platform's mass centre from the stance foot, or in flight from the robot's, at a node, m.
     pub fn platform(&self, node: usize) -> &[f64] {
         self.shapes.placement.p.of(self.placement(node))
     }
@@ -132,69 +159,105 @@ impl Instants {
         shape.moment_w.each(sharing).chain(shape.levers_w.each(sharing))
     }
 
-    /// Result of the `swing_velocity` kernel at the first (0) or last (1) node.
-    pub fn swing_velocity(&self, end: usize) -> &[f64] {
-        &self.swing[end]
+    /// Where the vertical position or velocity of a foot in the air stands in a kernel's block of them.
+    pub fn up(&self, foot: usize) -> usize {
+        foot * self.components + UP
     }
 
-    /// Evaluates all quantities; `stance` must have been integrated.
-    pub fn evaluate(&mut self, gait: &dyn Gait, leg: usize, mesh: &Mesh, stance: &Stance, parameters: &[f64]) {
+    /// What a foot's clearance at a node is made of.
+    pub fn factor(&self, mesh: &Mesh, parameters: &[f64], node: usize, foot: usize) -> Factor {
+        self.swings[foot].factor(&durations(&self.layout, parameters), mesh.nodes[node].0)
+    }
+
+    /// Gradient of what a foot's clearance at a node is made of, in (q, q̇, q̈) or the first of them, as far as the state decides.
+    pub fn of_foot(&self, mesh: &Mesh, node: usize, foot: usize, of: Of) -> &[f64] {
+        let up = self.up(foot);
+        match of {
+            Of::Height => self.shapes.placement.swing_q.row(self.placement(node), up),
+            Of::Velocity => {
+                let end = usize::from(node + 1 == mesh.nodes.len());
+                self.shapes.swing_velocity.v_w.row(&self.swing[end], up)
+            }
+            Of::Acceleration => self.takeoff_shape.lift_w.of(&self.takeoff),
+        }
+    }
+
+    /// Evaluates all quantities; `flow` must have been integrated.
+    pub fn evaluate(&mut self, gait: &dyn Gait, mesh: &Mesh, flow: &Flow, parameters: &[f64]) {
         let d = gait.description();
-        let (nq, s) = (d.orientations(), self.shapes);
-        let t = parameters[self.layout.duration()];
+        let (nq, s, mode) = (d.orientations(), self.shapes, self.mode);
         let last = mesh.nodes.len() - 1;
         let y = self.quantities;
+        let fall = Fall::new(&self.layout, self.gravity, parameters);
+        let durations = durations(&self.layout, parameters);
         let inverse_rows = self.inverse.chunks_mut(s.inverse_jacobian.len);
         let placement_rows = self.placement.chunks_mut(s.placement.len);
         let value_rows = self.values.chunks_mut(y.len());
         let rows = self.states.chunks_mut(3 * nq).zip(inverse_rows).zip(placement_rows).zip(value_rows);
         for (k, (((state, inverse), placement), values)) in rows.enumerate() {
             let share = mesh.nodes[k].0;
-            let [prescribed, rates, accelerations] = stance.prescribed.at(k);
+            let [prescribed, rates, accelerations] = flow.prescribed.at(k);
             let (q, rest) = state.split_at_mut(nq);
             let (qd, qdd) = rest.split_at_mut(nq);
             for j in 0..self.layout.prescribed {
                 let index = d.prescribed_index(j);
                 (q[index], qd[index], qdd[index]) = (prescribed[j], rates[j], accelerations[j]);
             }
-            (q[d.unactuated], qd[d.unactuated]) = (stance.beta[k], stance.betad[k]);
-            gait.inverse_jacobian(leg, q, qd, accelerations, inverse);
+            (q[d.unactuated], qd[d.unactuated]) = (flow.beta[k], flow.betad[k]);
+            gait.inverse_jacobian(mode, q, qd, accelerations, inverse);
             let ([torques, force], betadd) = {
                 let shape = &s.inverse_jacobian;
                 ([shape.gamma.of(inverse), shape.f.of(inverse)], shape.beta_dd.value(inverse))
             };
             qdd[d.unactuated] = betadd;
-            gait.placement(leg, q, placement);
-            y.write(values, [q, qd], [torques, force], s.placement.p.of(placement)[UP]);
-            values[y.clearance()] = if k == 0 || k == last {
-                let end = usize::from(k == last);
-                gait.swing_velocity(leg, q, qd, &mut self.swing[end]);
-                direction(end) * s.swing_velocity.v.of(&self.swing[end])[UP] * t
-            } else {
-                s.placement.swing.of(placement)[UP] / (4.0 * share * (1.0 - share))
-            };
+            gait.placement(mode, q, placement);
+            let fallen = fall.map_or(0.0, |fall| fall.height(share));
+            y.write(values, [q, qd], [torques, force], s.placement.p.of(placement)[UP] + fallen);
+            if k == 0 || k == last {
+                gait.swing_velocity(mode, q, qd, &mut self.swing[usize::from(k == last)]);
+            }
+            for (foot, swing) in self.swings.iter().enumerate() {
+                let up = foot * self.components + UP;
+                let factor = swing.factor(&durations, share);
+                let made_of = match factor.of {
+                    Of::Height => s.placement.swing.of(placement)[up] + fallen,
+                    Of::Velocity => {
+                        let rise = fall.map_or(0.0, |fall| fall.rise(share));
+                        s.swing_velocity.v.of(&self.swing[usize::from(k == last)])[up] + rise
+                    }
+                    Of::Acceleration => {
+                        gait.takeoff(swing.leg, q, qd, qdd, &mut self.takeoff);
+                        self.takeoff_shape.lift.value(&self.takeoff)
+                    }
+                };
+                values[y.clearance(foot)] = factor.value * made_of;
+            }
             let heights = &mut self.heights[k * s.heights.len..][..s.heights.len];
-            gait.heights(leg, q, heights);
-            values[y.heights()].copy_from_slice(s.heights.heights.of(heights));
+            gait.heights(mode, q, heights);
+            let own = &mut values[y.heights()];
+            own.copy_from_slice(s.heights.heights.of(heights));
+            if fall.is_some() {
+                own.iter_mut().for_each(|height| *height += fallen);
+            }
             if y.shared > 0 {
                 let sharing = &mut self.sharing[k * s.sharing.len..][..s.sharing.len];
-                gait.sharing(leg, q, qd, qdd, sharing);
+                gait.sharing(mode, q, qd, qdd, sharing);
                 y.write_shared(values, s, sharing);
             }
         }
     }
 
-    /// Gradients of all quantities; `stance` must have been differentiated.
-    pub fn differentiate(&mut self, d: &Description, mesh: &Mesh, stance: &Stance, parameters: &[f64]) {
+    /// Gradients of all quantities; `flow` must have been differentiated.
+    pub fn differentiate(&mut self, d: &Description, mesh: &Mesh, flow: &Flow, parameters: &[f64]) {
         let (nq, nj, np, s) = (d.orientations(), d.joints(), self.layout.len(), self.shapes);
-        let (y, layout) = (self.quantities, self.layout);
-        let t = parameters[layout.duration()];
-        let last = mesh.nodes.len() - 1;
+        let y = self.quantities;
+        let fall = Fall::new(&self.layout, self.gravity, parameters);
         let mut gradients = std::mem::take(&mut self.gradients);
         let mut betadd = std::mem::take(&mut self.betadd_p);
         for k in 0..mesh.nodes.len() {
+            let share = mesh.nodes[k].0;
             self.tabulate(mesh, parameters, k);
-            let chain = Chain::new(self, d, stance, k);
+            let chain = Chain::new(self, d, flow, k);
             // β̈ follows from the balance (eq. 10): its row tells how.
             let betadd_p = &mut betadd[k * np..(k + 1) * np];
             let balance = parts(self.balance(k), nq);
@@ -213,27 +276,40 @@ impl Instants {
                 chain.coordinate(j, 1, out);
             }
             let row = s.placement.p_q.row(self.placement(k), UP);
-            chain.row([row, &[], &[]], None, &mut block[y.height() * np..][..np]);
+            let out = &mut block[y.height() * np..][..np];
+            chain.row([row, &[], &[]], None, out);
+            if let Some(fall) = fall {
+                fall.add_height_gradient(share, 1.0, out);
+            }
             let heights = block[y.heights().start * np..y.heights().end * np].chunks_mut(np);
             for (row, out) in self.heights(k).zip(heights) {
                 chain.row([row, &[], &[]], None, out);
+                if let Some(fall) = fall {
+                    fall.add_height_gradient(share, 1.0, out);
+                }
             }
             for (row, out) in self.sharing(k).zip(block[y.shared().start * np..].chunks_mut(np)) {
                 chain.row(parts(row, nq), Some(betadd_p), out);
             }
-            let out = &mut block[y.clearance() * np..][..np];
-            if k == 0 || k == last {
-                let end = usize::from(k == last);
-                let swing = &self.swing[end];
-                let row = s.swing_velocity.v_w.row(swing, UP);
-                chain.row([&row[..nq], &row[nq..], &[]], None, out);
-                out.iter_mut().for_each(|x| *x *= direction(end) * t);
-                out[layout.duration()] += direction(end) * s.swing_velocity.v.of(swing)[UP];
-            } else {
-                let share = mesh.nodes[k].0;
-                let row = s.placement.swing_q.row(self.placement(k), UP);
-                chain.row([row, &[], &[]], None, out);
-                out.iter_mut().for_each(|x| *x /= 4.0 * share * (1.0 - share));
+            for foot in 0..y.feet() {
+                let factor = self.factor(mesh, parameters, k, foot);
+                let clearance = self.values[k * y.len() + y.clearance(foot)];
+                let out = &mut block[y.clearance(foot) * np..][..np];
+                let row = self.of_foot(mesh, k, foot, factor.of);
+                match factor.of {
+                    Of::Height => chain.row([row, &[], &[]], None, out),
+                    Of::Velocity => chain.row([&row[..nq], &row[nq..], &[]], None, out),
+                    Of::Acceleration => chain.row(parts(row, nq), Some(betadd_p), out),
+                }
+                match (fall, factor.of) {
+                    (Some(fall), Of::Height) => fall.add_height_gradient(share, 1.0, out),
+                    (Some(fall), Of::Velocity) => fall.add_rise_gradient(share, 1.0, out),
+                    _ => {}
+                }
+                out.iter_mut().for_each(|x| *x *= factor.value);
+                for (at, by) in self.layout.durations().zip(&factor.by) {
+                    out[at] += clearance / factor.value * by;
+                }
             }
         }
         self.gradients = gradients;
@@ -250,10 +326,32 @@ impl Instants {
         }
     }
 
-    /// Gradient of the platform's x at a node, in the local parameters; after `differentiate`.
-    pub fn platform_x_gradient(&self, d: &Description, stance: &Stance, node: usize, out: &mut [f64]) {
+    /// How far forward the platform's mass centre has come at a node since take-off or beside the stance foot, m.
+    pub fn platform_x(&self, mesh: &Mesh, parameters: &[f64], node: usize) -> f64 {
+        let fall = Fall::new(&self.layout, self.gravity, parameters);
+        self.platform(node)[FORWARD] + fall.map_or(0.0, |fall| fall.advance(mesh.nodes[node].0))
+    }
+
+    /// Its gradient in the local parameters; after `differentiate`.
+    pub fn platform_x_gradient(
+        &self,
+        d: &Description,
+        mesh: &Mesh,
+        flow: &Flow,
+        parameters: &[f64],
+        node: usize,
+        out: &mut [f64],
+    ) {
         let row = self.shapes.placement.p_q.row(self.placement(node), FORWARD);
-        Chain::new(self, d, stance, node).row([row, &[], &[]], None, out);
+        Chain::new(self, d, flow, node).row([row, &[], &[]], None, out);
+        if let Some(fall) = Fall::new(&self.layout, self.gravity, parameters) {
+            fall.add_advance_gradient(mesh.nodes[node].0, 1.0, out);
+        }
+    }
+
+    /// The foot that leaves the ground at rest when the phase begins.
+    pub fn leaving_at_rest(&self) -> Option<usize> {
+        self.swings.iter().position(Swing::begins_at_rest)
     }
 }
 

@@ -1,24 +1,30 @@
 //! Which quantities an instant has, and where each stands in a row of them.
 
 use crate::constraints::sharing;
-use piaffe_model::Description;
-use piaffe_model::shape::{Shapes, Sharing, SharingCurvatureWeights};
+use piaffe_model::shape::{ModeShapes, Sharing, SharingCurvatureWeights};
+use piaffe_model::{Description, Mode};
 
 /// Where each quantity stands.
 #[derive(Clone, Copy, Debug)]
 pub struct Quantities {
     joints: usize,
+    /// Of the reaction.
     components: usize,
+    /// Feet in the air.
+    feet: usize,
     points: usize,
     pub(super) shared: usize,
 }
 
 impl Quantities {
-    pub fn new(description: &Description) -> Quantities {
-        let shared = if sharing::applies(description) { Shared::new(description).len() } else { 0 };
+    /// Of an instant of this mode.
+    pub fn new(description: &Description, mode: Mode) -> Quantities {
+        let stands = mode.stance().is_some();
+        let shared = if stands && sharing::applies(description) { Shared::new(description).len() } else { 0 };
         Quantities {
             joints: description.joints(),
-            components: description.positions(),
+            components: if stands { description.positions() } else { 0 },
+            feet: mode.swinging().count(),
             points: description.lowest.len(),
             shared,
         }
@@ -29,7 +35,7 @@ impl Quantities {
         joint
     }
 
-    /// Component of the reaction at the stance foot, N.
+    /// Component of the reaction at the stance foot, N; in flight there is none.
     pub fn force(&self, component: usize) -> usize {
         self.joints + component
     }
@@ -44,15 +50,24 @@ impl Quantities {
         2 * self.joints + self.components + joint
     }
 
-    /// Height of the swing foot over `4 s (1 − s)`: the height of the parabola that it touches, m.
-    /// At both ends its limit: the vertical speed times T/4, up or down.
-    pub fn clearance(&self) -> usize {
-        3 * self.joints + self.components
+    /// How many components the reaction has.
+    pub fn components(&self) -> usize {
+        self.components
+    }
+
+    /// How many feet are in the air.
+    pub fn feet(&self) -> usize {
+        self.feet
+    }
+
+    /// Height of a foot in the air over the curve above which it stays: how high that curve could be, m; see `swing`.
+    pub fn clearance(&self, foot: usize) -> usize {
+        3 * self.joints + self.components + foot
     }
 
     /// Height of the platform's mass centre over the ground, m.
     pub fn height(&self) -> usize {
-        self.clearance() + 1
+        self.clearance(self.feet)
     }
 
     /// Heights over the ground of the description's `lowest` points, m.
@@ -76,7 +91,7 @@ impl Quantities {
     }
 
     /// Writes what the kernel `sharing` gives.
-    pub(super) fn write_shared(&self, values: &mut [f64], shapes: &Shapes, sharing: &[f64]) {
+    pub(super) fn write_shared(&self, values: &mut [f64], shapes: &ModeShapes, sharing: &[f64]) {
         let (from, to) = (&shapes.sharing, &shapes.sharing_curvature.weights);
         let own = &mut values[self.shared()];
         to.moment.of_mut(own).copy_from_slice(from.moment.of(sharing));
@@ -84,7 +99,7 @@ impl Quantities {
     }
 
     /// The shape of what the kernel `sharing` gives: nothing if it is not looked at.
-    pub(super) fn sharing(&self, shapes: &Shapes) -> Sharing {
+    pub(super) fn sharing(&self, shapes: &ModeShapes) -> Sharing {
         if self.shared > 0 { shapes.sharing } else { Sharing::NONE }
     }
 
@@ -105,7 +120,7 @@ pub struct Shared {
 
 impl Shared {
     pub fn new(description: &Description) -> Shared {
-        Shared { shape: description.shapes.sharing_curvature.weights }
+        Shared { shape: description.shapes.stance.sharing_curvature.weights }
     }
 
     /// Moment about the vertical (0) or the transverse axis (1).
@@ -125,9 +140,4 @@ impl Shared {
     pub fn is_empty(self) -> bool {
         self.len() == 0
     }
-}
-
-/// Sign and factor that turn the swing foot's vertical velocity into clearance: up first, down last.
-pub fn direction(end: usize) -> f64 {
-    if end == 0 { 0.25 } else { -0.25 }
 }

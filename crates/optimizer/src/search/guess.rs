@@ -1,13 +1,13 @@
-//! Where a search starts: a walk drawn from geometry alone.
+//! Where a search starts: a walk or run drawn from geometry alone.
 //!
-//! A plan says how high the robot stands, how long a half step takes and how its feet and platform
+//! A plan says how high the robot stands, how long each phase takes and how its feet and platform
 //! move over it; configurations follow by inverse kinematics on the generated placement kernel, for
 //! any leg, kept near a nominal posture inside the joint ranges.
 
 use nalgebra::{DMatrix, DVector};
 use piaffe_model::motion::{HalfStep, Motion};
 use piaffe_model::units::Units;
-use piaffe_model::{Description, FORWARD, Gait, HalfSteps, Rotation, UP};
+use piaffe_model::{Description, FORWARD, Gait, Mode, Rotation, Then, UP};
 use std::f64::consts::FRAC_PI_2;
 
 /// What distinguishes one start from another.
@@ -15,7 +15,7 @@ use std::f64::consts::FRAC_PI_2;
 pub struct Plan {
     /// Height of the hips over the foot, as a share of the straight leg.
     pub height: f64,
-    /// Duration of each half step, s.
+    /// Duration of each phase, s.
     pub durations: Vec<f64>,
     /// Height of the swing foot at mid-step, as a share of the straight leg.
     pub clearance: f64,
@@ -32,7 +32,7 @@ impl Plan {
     pub fn default_for(d: &Description) -> Plan {
         Plan {
             height: 0.85,
-            durations: vec![duration(d, 1.26); d.phases()],
+            durations: (0..d.phases.len()).map(|k| duration(d, k, typical(d, k, 0.438))).collect(),
             clearance: 1.0 / 15.0,
             lead: 0.0,
             posture: vec![0.5; joints_per_leg(d)],
@@ -44,7 +44,7 @@ impl Plan {
     pub fn random(gait: &dyn Gait, rng: &mut fastrand::Rng) -> Plan {
         let d = gait.description();
         let mut within = |lo: f64, hi: f64| lo + (hi - lo) * rng.f64();
-        let durations = (0..d.phases()).map(|_| duration(d, within(0.457, 2.29))).collect();
+        let durations = (0..d.phases.len()).map(|k| duration(d, k, typical(d, k, within(0.0, 1.0)))).collect();
         let (clearance, lead) = (within(2.0 / 75.0, 2.0 / 15.0), within(-0.3, 0.3));
         let posture = (0..joints_per_leg(d)).map(|_| within(0.1, 0.9)).collect();
         let pitch = within(-0.5, 0.5);
@@ -54,39 +54,58 @@ impl Plan {
     }
 }
 
+/// A duration in the robot's unit of time, from short (0) to long (1).
+fn typical(d: &Description, k: usize, share: f64) -> f64 {
+    let [short, long] = match d.phases[k].mode {
+        Mode::Stance(_) => [0.457, 2.29],
+        // A mass that is thrown up a third of the leg is back after 1.6.
+        Mode::Flight => [0.15, 1.2],
+    };
+    short + (long - short) * share
+}
+
 fn joints_per_leg(d: &Description) -> usize {
     d.legs.iter().map(|l| l.end_joint - l.first_joint).max().unwrap_or(0)
 }
 
-/// A duration in the robot's unit of time, within the limits; s.
-fn duration(d: &Description, t: f64) -> f64 {
-    let [lo, hi] = d.limits.half_step_duration;
+/// A duration of phase `k` in the robot's unit of time, within the limits; s.
+fn duration(d: &Description, k: usize, t: f64) -> f64 {
+    let [lo, hi] = d.phases[k].duration;
     (t * Units::new(d).time).min(0.8 * hi).max(1.2 * lo)
 }
 
-/// Where platform and swing foot are, from the stance foot, m.
-struct Target {
-    platform: [f64; 2],
-    swing: [f64; 2],
+/// Where the feet and the platform are over the gait's phases, in the world.
+struct Course<'a> {
+    d: &'a Description,
+    plan: &'a Plan,
+    durations: Vec<f64>,
+    speed: f64,
 }
 
-/// The walk of a plan at a mean speed (m/s).
+/// Where platform and the other foot are, from a foot, m.
+struct Target {
+    platform: [f64; 2],
+    other: [f64; 2],
+}
+
+/// The walk or run of a plan at a mean speed (m/s).
 pub fn walk(gait: &dyn Gait, plan: &Plan, speed: f64) -> Motion {
     let d = gait.description();
     let nominal = nominal_posture(d, plan);
-    let leg = d.leg_length();
-    let total: f64 = plan.durations.iter().sum();
+    let stances = |k: &usize| d.phases[*k].mode != Mode::Flight;
+    let on_foot = || (0..d.phases.len()).filter(stances);
     let mut durations = plan.durations.clone();
+    let total: f64 = on_foot().map(|k| durations[k]).sum();
     // Steps longer than the leg allows become quicker.
-    let longest = 0.9 * leg * if d.half_steps == HalfSteps::Mirrored { 1.0 } else { 1.5 };
+    let longest = 0.9 * d.leg_length() * if on_foot().count() == 1 { 1.0 } else { 1.5 };
     if speed.abs() * total > longest {
-        let [shortest, _] = d.limits.half_step_duration;
-        for t in &mut durations {
-            *t = (*t * longest / (speed.abs() * total)).max(shortest * 1.05);
+        for k in on_foot() {
+            let [shortest, _] = d.phases[k].duration;
+            durations[k] = (durations[k] * longest / (speed.abs() * total)).max(shortest * 1.05);
         }
     }
-    let travel = speed * durations.iter().sum::<f64>();
-    let half_steps = (0..d.phases()).map(|k| half_step(gait, plan, k, &durations, travel, &nominal)).collect();
+    let course = Course { d, plan, durations, speed };
+    let half_steps = (0..d.phases.len()).map(|k| phase(gait, &course, k, &nominal)).collect();
     Motion { half_steps }
 }
 
@@ -113,11 +132,12 @@ fn bend(d: &Description, j: usize) -> [f64; 2] {
     if d.hangs_on_platform(j) && hangs[0] < hangs[1] { hangs } else { [lo, hi] }
 }
 
-fn half_step(gait: &dyn Gait, plan: &Plan, k: usize, durations: &[f64], travel: f64, nominal: &[f64]) -> HalfStep {
+fn phase(gait: &dyn Gait, course: &Course, k: usize, nominal: &[f64]) -> HalfStep {
     let d = gait.description();
-    let t = durations[k];
-    let target = |s: f64| place(gait, plan, k, durations, travel, s);
-    let solve = |s: f64, near: &[f64]| inverse_kinematics(gait, k, &target(s), near);
+    let t = course.durations[k];
+    // Where feet are from each other, either tells.
+    let foot = d.phases[k].mode.stance().unwrap_or_default();
+    let solve = |s: f64, near: &[f64]| inverse_kinematics(gait, Mode::Stance(foot), &course.target(k, s, foot), near);
     let start = solve(0.0, nominal);
     let end = solve(1.0, nominal);
     let interior_times = d.polynomial_order - 3;
@@ -143,30 +163,75 @@ fn half_step(gait: &dyn Gait, plan: &Plan, k: usize, durations: &[f64], travel: 
     }
 }
 
-/// Platform and swing foot at `s` of half step `k`.
-fn place(gait: &dyn Gait, plan: &Plan, k: usize, durations: &[f64], travel: f64, s: f64) -> Target {
-    let d = gait.description();
-    let height = standing_height(gait) - (1.0 - plan.height) * d.leg_length();
-    let lead = plan.lead * d.leg_length();
-    let lift = 4.0 * plan.clearance * d.leg_length() * s * (1.0 - s);
-    let glide = s * s * (3.0 - 2.0 * s);
-    if d.half_steps == HalfSteps::Mirrored {
-        let x = travel * (s - 0.5) + lead;
-        return Target { platform: [x, height], swing: [travel * (2.0 * glide - 1.0), lift] };
+impl Course<'_> {
+    /// Platform and the other foot from the foot of leg `foot`, at share `s` of phase `k`.
+    fn target(&self, k: usize, s: f64, foot: usize) -> Target {
+        let (platform, feet) = (self.platform(k, s), [0, 1].map(|leg| self.foot(k as isize, s, leg)));
+        let from = |at: [f64; 2]| [0, 1].map(|c| at[c] - feet[foot][c]);
+        Target { platform: from(platform), other: from(feet[1 - foot]) }
     }
-    // Distinct half steps: the feet keep their spread on average; each moves by the whole travel.
-    let spread = foot_spread(gait);
-    let share = durations[0] / (durations[0] + durations[1]);
-    let narrow = spread - 0.5 * travel.copysign(spread);
-    let wide = spread + 0.5 * travel.copysign(spread);
-    let start = 0.5 * narrow + lead;
-    if k == 0 {
-        let (from, to) = if spread > 0.0 { (narrow, wide) } else { (spread - 0.5 * travel, spread + 0.5 * travel) };
-        Target { platform: [start + share * travel * s, height], swing: [from + (to - from) * glide, lift] }
-    } else {
-        let fore = spread + 0.5 * travel;
-        let begin = start + share * travel;
-        Target { platform: [begin + (1.0 - share) * travel * s - fore, height], swing: [travel * glide - fore, lift] }
+
+    /// The `i`-th phase of a motion that goes on for ever, with the legs' names of the first round.
+    fn mode(&self, i: isize) -> Mode {
+        let count = self.durations.len() as isize;
+        let mode = self.d.phases[i.rem_euclid(count) as usize].mode;
+        let exchanged = self.d.then == Then::Mirrored && i.div_euclid(count).rem_euclid(2) == 1;
+        if exchanged { mode.exchanged() } else { mode }
+    }
+
+    fn duration(&self, i: isize) -> f64 {
+        self.durations[i.rem_euclid(self.durations.len() as isize) as usize]
+    }
+
+    /// When the `i`-th phase begins, s.
+    fn start(&self, i: isize) -> f64 {
+        let count = self.durations.len() as isize;
+        let own: f64 = self.durations[..i.rem_euclid(count) as usize].iter().sum();
+        i.div_euclid(count) as f64 * self.durations.iter().sum::<f64>() + own
+    }
+
+    /// The platform moves evenly forward. It is thrown up and caught as a flight of its duration demands, like a mass on a spring.
+    fn platform(&self, k: usize, s: f64) -> [f64; 2] {
+        let (leg, t) = (self.d.leg_length(), self.durations[k]);
+        let height = self.plan.height * leg - self.hip(0)[UP];
+        let x = self.speed * (self.start(k as isize) + s * t) + self.plan.lead * leg;
+        let thrown =
+            |i: isize| if self.mode(i) == Mode::Flight { 0.5 * self.d.gravity * self.duration(i) } else { 0.0 };
+        let k = k as isize;
+        let [v0, v1] = match self.mode(k) {
+            Mode::Flight => [thrown(k), -thrown(k)],
+            Mode::Stance(_) => [-thrown(k - 1), thrown(k + 1)],
+        };
+        // The cubic between two equal heights with these speeds.
+        [x, height + t * (v0 * s * (1.0 - s) * (1.0 - s) - v1 * s * s * (1.0 - s))]
+    }
+
+    /// A foot stands below where its hip is midway, and glides from print to print.
+    fn foot(&self, k: isize, s: f64, leg: usize) -> [f64; 2] {
+        let stands = |i: &isize| self.mode(*i) == Mode::Stance(leg);
+        if stands(&k) {
+            return [self.print(k, leg), 0.0];
+        }
+        let around = 2 * self.durations.len() as isize;
+        let before = (1..=around).map(|n| k - n).find(stands).unwrap_or(k - 1);
+        let after = (1..=around).map(|n| k + n).find(stands).unwrap_or(k + 1);
+        let [left, lands, now] = [self.start(before + 1), self.start(after), self.start(k) + s * self.duration(k)];
+        let w = (now - left) / (lands - left);
+        let glide = w * w * (3.0 - 2.0 * w);
+        let [from, to] = [before, after].map(|i| self.print(i, leg));
+        [from + (to - from) * glide, 4.0 * self.plan.clearance * self.d.leg_length() * w * (1.0 - w)]
+    }
+
+    /// Where the foot of a leg stands in the `i`-th phase.
+    fn print(&self, i: isize, leg: usize) -> f64 {
+        self.speed * (self.start(i) + 0.5 * self.duration(i)) + self.hip(leg)[FORWARD]
+    }
+
+    /// Hip of a virtual leg from the platform's mass centre.
+    fn hip(&self, leg: usize) -> [f64; 3] {
+        let first = self.d.legs[leg].first_joint;
+        let hip = self.d.bodies.iter().find(|b| b.parent == Some(0) && b.coordinate == Some(first));
+        hip.map_or([0.0; 3], |b| b.offset)
     }
 }
 
@@ -174,42 +239,26 @@ fn place(gait: &dyn Gait, plan: &Plan, k: usize, durations: &[f64], travel: f64,
 fn reach(gait: &dyn Gait, plan: &Plan) -> f64 {
     let d = gait.description();
     let level = nominal_posture(d, &Plan { pitch: 0.0, ..plan.clone() });
-    let (shape, mut out) = (&d.shapes.placement, d.shapes.placement.zeros());
-    gait.placement(0, &level, &mut out);
+    let (shape, mut out) = (&d.shapes.stance.placement, d.shapes.stance.placement.zeros());
+    gait.placement(Mode::Stance(0), &level, &mut out);
     let hip = d.bodies.iter().find(|b| b.parent == Some(0) && b.coordinate == Some(d.legs[0].first_joint));
     let [x, y, _] = hip.map_or([0.0; 3], |b| b.offset);
     let platform = shape.p.of(&out);
     (platform[FORWARD] + x).hypot(platform[UP] + y)
 }
 
-/// Height of the platform's mass centre with all joints at zero, m.
-fn standing_height(gait: &dyn Gait) -> f64 {
-    let d = gait.description();
-    let (shape, mut out) = (&d.shapes.placement, d.shapes.placement.zeros());
-    gait.placement(0, &vec![0.0; d.orientations()], &mut out);
-    shape.p.of(&out)[UP]
-}
-
-/// Forward distance from foot 1 to foot 2 with all joints at zero, m.
-fn foot_spread(gait: &dyn Gait) -> f64 {
-    let d = gait.description();
-    let (shape, mut out) = (&d.shapes.placement, d.shapes.placement.zeros());
-    gait.placement(0, &vec![0.0; d.orientations()], &mut out);
-    shape.swing.of(&out)[FORWARD]
-}
-
-/// Configuration that places platform and swing foot, near a posture: damped least squares.
-fn inverse_kinematics(gait: &dyn Gait, leg: usize, target: &Target, near: &[f64]) -> Vec<f64> {
+/// Configuration that places platform and the other foot, near a posture: damped least squares.
+fn inverse_kinematics(gait: &dyn Gait, mode: Mode, target: &Target, near: &[f64]) -> Vec<f64> {
     /// How much a distance from the posture counts beside one from the target, in legs.
     const POSTURE: f64 = 3e-3;
     let d = gait.description();
     let leg_length = d.leg_length();
     let nq = d.orientations();
-    let (shape, mut out) = (&d.shapes.placement, d.shapes.placement.zeros());
-    let wanted = [(shape.p, shape.p_q, target.platform), (shape.swing, shape.swing_q, target.swing)];
+    let (shape, mut out) = (&d.shapes.stance.placement, d.shapes.stance.placement.zeros());
+    let wanted = [(shape.p, shape.p_q, target.platform), (shape.swing, shape.swing_q, target.other)];
     let mut q = DVector::from_column_slice(near);
     for _ in 0..60 {
-        gait.placement(leg, q.as_slice(), &mut out);
+        gait.placement(mode, q.as_slice(), &mut out);
         let mut normal = DMatrix::<f64>::identity(nq, nq) * (POSTURE * POSTURE);
         let mut right = DVector::<f64>::zeros(nq);
         for (i, n) in near.iter().enumerate() {

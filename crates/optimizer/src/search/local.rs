@@ -3,7 +3,7 @@
 use super::nearest::{nearest, reach};
 use super::refine::dips;
 use crate::cycle::{AT_REST, Cycle, Label, Still, elements};
-use crate::stance::Undefined;
+use crate::flow::Undefined;
 use piaffe_model::Gait;
 use piaffe_model::motion::{Costs, Criterion, Motion};
 use piaffe_sqp as sqp;

@@ -7,10 +7,10 @@
 //! margin is needed.
 
 use crate::cycle::Cycle;
+use crate::flow::Undefined;
 use crate::instant::Glance;
 use crate::lgl::NODES;
 use crate::polynomial::evaluate;
-use crate::stance::Undefined;
 
 /// Points of the grid per half step.
 const GRID: usize = 240;
@@ -72,7 +72,7 @@ impl Dips {
 pub fn dips(cycle: &Cycle) -> Result<Dips, Undefined> {
     let mut result = Dips::default();
     for phase in 0..cycle.phases() {
-        let mut glance = Glance::new(cycle.description(), cycle.stance_leg(phase));
+        let mut glance = Glance::new(cycle.description(), phase);
         let Suspects { instants, constraints } = suspects(cycle, phase);
         // At three successive instants.
         let mut values = [0, 1, 2].map(|_| vec![0.0; constraints.len()]);
@@ -86,7 +86,7 @@ pub fn dips(cycle: &Cycle) -> Result<Dips, Undefined> {
             };
             values.rotate_left(1);
             for (value, constraint) in values[2].iter_mut().zip(&constraints) {
-                *value = cycle.path()[*constraint].value(y);
+                *value = cycle.path(phase)[*constraint].value(y);
             }
             if k < 2 {
                 continue;
@@ -123,7 +123,7 @@ struct Suspects {
 
 fn suspects(cycle: &Cycle, phase: usize) -> Suspects {
     let last = cycle.nodes(phase) - 1;
-    let mut near = vec![false; cycle.path().len()];
+    let mut near = vec![false; cycle.path(phase).len()];
     let mut instants = Vec::with_capacity(GRID + last);
     let mut grid = (1..GRID).map(|k| k as f64 / GRID as f64).peekable();
     for (element, first) in (0..last).step_by(NODES - 1).enumerate() {

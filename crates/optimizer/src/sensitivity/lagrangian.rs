@@ -7,12 +7,13 @@
 //! subgradient there is part of L.
 
 use crate::constraints::{ImpactConstraints, Limits, path_constraints_of};
-use crate::cycle::{CLOSURE, Place, renamed};
-use crate::instant::{Quantities, direction};
+use crate::cycle::{Equation, Place};
+use crate::instant::Quantities;
 use crate::optimality::Linearized;
+use crate::swing::{Of, Swing, swings};
 use num_traits::Zero;
 use piaffe_model::motion::{HalfStep, Motion};
-use piaffe_model::{Description, Lever};
+use piaffe_model::{Description, Lever, Mode};
 use piaffe_number::{Dual, Scalar};
 use piaffe_verify::impact::{Impact, impact_of};
 use piaffe_verify::instants::State;
@@ -69,15 +70,16 @@ impl<'a> Slopes<'a> {
         let numbers = Numbers::of(d, numbers);
         let limits =
             Limits::along(d, &std::array::from_fn(|lane| d.direction(levers.get(lane).map_or(&[], |l| l.slopes))));
-        let landings = (0..d.phases()).map(|k| self.landing(&numbers, k)).collect::<Option<Vec<_>>>()?;
+        let landings = (0..d.phases.len()).map(|k| self.landing(&numbers, k)).collect::<Option<Vec<_>>>()?;
 
         let units = self.linearized.cycle.units();
         let mut lagrangian = Number::zero();
-        let (mut travel, impact) = (Number::zero(), ImpactConstraints::with(d, limits.friction));
+        let mut travel = Number::zero();
         for (k, landing) in landings.iter().enumerate() {
-            let before = (k + d.phases() - 1) % d.phases();
+            let before = (k + d.phases.len() - 1) % d.phases.len();
+            let impact = ImpactConstraints::with(d, d.transition(k), limits.friction)?;
             lagrangian += self.half_step(&numbers, &limits, k, &landings[before].impact, &mut travel)?;
-            lagrangian -= landing.height.scale(m.equalities[CLOSURE * k + 2] / units.length);
+            lagrangian -= landing.height.scale(self.multiplier(Equation::Touchdown(k)) / units.length);
             let end = [&landing.impact.impulse.as_slice()[..d.positions()], &[landing.impact.leaving.y]].concat();
             for (i, multiplier) in self.priced() {
                 if let Place::Impact { phase, constraint } = self.linearized.cycle.place(i)
@@ -89,11 +91,18 @@ impl<'a> Slopes<'a> {
             let bounds = self.motion.half_steps.len();
             let own = m.bounds.len() / bounds;
             let nu = m.bounds[(k + 1) * own - 1];
-            lagrangian += limits.half_step_duration[usize::from(nu < 0.0)].scale(nu);
+            lagrangian += limits.durations[k][usize::from(nu < 0.0)].scale(nu);
         }
         lagrangian -= travel.scale(self.speed_multiplier() / units.length);
         let criterion = self.linearized.cycle.criterion_per_objective();
         Some(lagrangian.d.map(|slope| criterion * slope))
+    }
+
+    /// That of an equation.
+    fn multiplier(&self, equation: Equation) -> f64 {
+        let Linearized { cycle, multipliers, .. } = self.linearized;
+        let row = cycle.equations().iter().position(|other| *other == equation);
+        row.map_or(0.0, |row| multipliers.equalities[row])
     }
 
     /// Inequalities with a multiplier.
@@ -110,7 +119,7 @@ impl<'a> Slopes<'a> {
     /// The landing that ends half step `k`, where Θ has it.
     fn landing(&self, numbers: &Numbers<Number>, k: usize) -> Option<Landing> {
         let (d, h) = (self.d, &self.motion.half_steps[k]);
-        let stance = self.linearized.cycle.stance_leg(k);
+        let stance = self.linearized.cycle.mode(k).stance()?;
         let landing = 1 - stance;
         let constants = |values: Vec<f64>| -> Vec<Number> { values.into_iter().map(Number::constant).collect() };
         let q = constants(d.complete(&h.q_final, h.beta_final));
@@ -134,27 +143,28 @@ impl<'a> Slopes<'a> {
         let mut half_step: HalfStep<Number> = self.motion.half_steps[k].cast();
         let rates = &impact.after[d.positions()..];
         let rate = |index: usize| {
-            let (from, sign) = renamed(d, index);
+            let (from, sign) = d.renamed((k + d.phases.len() - 1) % d.phases.len(), index);
             rates[from].scale(sign)
         };
         half_step.qd_initial = (0..d.prescribed()).map(|j| rate(d.prescribed_index(j))).collect();
         half_step.betad_initial = rate(d.unactuated);
         let duration = self.motion.half_steps[k].duration;
-        let mut phase = Phase::with(d, numbers.clone(), &half_step, cycle.stance_leg(k), k + 1).ok()?;
+        let (mode, swings) = (cycle.mode(k), swings(d, k));
+        let mut phase = Phase::with(d, numbers.clone(), &half_step, mode.stance()?, k + 1).ok()?;
 
         // β and σ at the end: these numbers change σ(q, q̇) of the wanted end and of the motion's alike.
         let [beta, betad] = phase.beta_end();
         let by_beta = self.momentum_at_end(k);
-        let mut lagrangian = -beta.scale(m.equalities[CLOSURE * k]);
+        let mut lagrangian = -beta.scale(self.multiplier(Equation::ClosureOfBeta(k)));
         lagrangian -= (beta.scale(by_beta[0]) + betad.scale(by_beta[1]))
-            .scale(m.equalities[CLOSURE * k + 1] / cycle.units().angular_momentum());
+            .scale(self.multiplier(Equation::ClosureOfSigma(k)) / cycle.units().angular_momentum());
 
         // What is weighted at an instant: quantities of the criterion, constraints.
         let last = cycle.last_node(k);
         let mut weights = vec![Vec::new(); last + 1];
         cycle.objective_partials(k).for_each(|(node, quantity, weight)| weights[node].push((quantity, weight)));
         for ((_, joint, node), multiplier) in cycle.resting().zip(&m.kinks).filter(|((phase, ..), _)| *phase == k) {
-            weights[node].push((Quantities::new(d).rate(joint), -multiplier));
+            weights[node].push((Quantities::new(d, mode).rate(joint), -multiplier));
         }
         let mut rows = vec![Vec::new(); last + 1];
         for (i, multiplier) in self.priced() {
@@ -167,12 +177,12 @@ impl<'a> Slopes<'a> {
                     .for_each(|(node, part)| rows[node].push((constraint, multiplier * part)));
             }
         }
-        let constraints = path_constraints_of(d, limits);
+        let constraints = path_constraints_of(d, limits, k);
         let mut state = State::new(d);
         for (node, (weights, rows)) in weights.iter().zip(&rows).enumerate() {
             let share = cycle.instant(k, node);
             phase.at(share * duration, &mut state).ok()?;
-            let y = quantities(d, &state, share, duration);
+            let y = quantities(d, mode, &swings, &state, share, duration);
             for (quantity, weight) in weights {
                 lagrangian += y[*quantity].scale(*weight);
             }
@@ -192,18 +202,26 @@ impl<'a> Slopes<'a> {
     fn momentum_at_end(&self, k: usize) -> [f64; 2] {
         let (d, h) = (self.d, &self.motion.half_steps[k]);
         let nq = d.orientations();
-        let mut momentum = d.shapes.momentum.zeros();
+        let mode = self.linearized.cycle.mode(k);
+        let shape = &d.shape(mode).momentum;
+        let mut momentum = shape.zeros();
         let (q, qd) = (d.complete(&h.q_final, h.beta_final), d.complete(&h.qd_final, h.betad_final));
-        let cycle = &self.linearized.cycle;
-        cycle.gait().momentum(cycle.stance_leg(k), &q, &qd, &mut momentum);
-        let by_w = d.shapes.momentum.sigma_w.of(&momentum);
+        self.linearized.cycle.gait().momentum(mode, &q, &qd, &mut momentum);
+        let by_w = shape.sigma_w.of(&momentum);
         [by_w[d.unactuated], by_w[nq + d.unactuated]]
     }
 }
 
 /// The quantities of an instant, in the order of [`Quantities`].
-fn quantities(d: &Description, state: &State<Number>, share: f64, duration: f64) -> Vec<Number> {
-    let (y, joints) = (Quantities::new(d), d.joints());
+fn quantities(
+    d: &Description,
+    mode: Mode,
+    swings: &[Swing],
+    state: &State<Number>,
+    share: f64,
+    duration: f64,
+) -> Vec<Number> {
+    let (y, joints) = (Quantities::new(d, mode), d.joints());
     let mut values = vec![Number::zero(); y.len()];
     values[..joints].copy_from_slice(&state.torques);
     values[y.force(0)..][..d.positions()].copy_from_slice(&state.force.as_slice()[..d.positions()]);
@@ -213,10 +231,10 @@ fn quantities(d: &Description, state: &State<Number>, share: f64, duration: f64)
     for (value, point) in values[y.heights()].iter_mut().zip(d.lowest) {
         *value = state.heights[*point];
     }
-    values[y.clearance()] = if share <= 0.0 || share >= 1.0 {
-        state.swing_velocity.y.scale(direction(usize::from(share >= 1.0)) * duration)
-    } else {
-        state.swing.y.scale(0.25 / (share * (1.0 - share)))
-    };
+    for (foot, swing) in swings.iter().enumerate() {
+        let factor = swing.factor(&[duration], share);
+        let made_of = if factor.of == Of::Velocity { state.swing_velocity.y } else { state.swing.y };
+        values[y.clearance(foot)] = made_of.scale(factor.value);
+    }
     values
 }

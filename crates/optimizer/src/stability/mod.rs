@@ -16,11 +16,11 @@ pub mod phase;
 pub mod time;
 mod words;
 
-use crate::stance::Undefined;
+use crate::flow::Undefined;
 use passage::Passage;
 pub use phase::PhaseTracking;
 use piaffe_model::motion::Motion;
-use piaffe_model::{Gait, HalfSteps};
+use piaffe_model::{Gait, Then};
 use serde::{Deserialize, Serialize};
 pub use time::{Clock, TimeTracking};
 
@@ -47,7 +47,7 @@ pub fn stability(gait: &dyn Gait, motion: &Motion) -> Result<Stability, Undefine
     let count = motion.half_steps.len();
     let passages = (0..count).map(|k| Passage::new(gait, motion, k)).collect::<Result<Vec<_>, _>>()?;
     // The legs swap roles: two like half steps are a step.
-    let repeats = if d.half_steps == HalfSteps::Mirrored { 2 } else { 1 };
+    let repeats = if d.then == Then::Mirrored { 2 } else { 1 };
     Ok(Stability {
         clock: TimeTracking::new(gait, &passages, repeats, Clock::RunsOn),
         restarted_clock: TimeTracking::new(gait, &passages, repeats, Clock::StartsAnew),

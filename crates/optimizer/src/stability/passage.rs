@@ -1,9 +1,9 @@
 //! A half step of the gait and the landing that ends it, with what small deviations need to know of them.
 
-use crate::cycle::{elements, renamed, stance_leg};
-use crate::stance::{self, Layout, Mesh, Stance, Undefined};
+use crate::cycle::elements;
+use crate::flow::{self, Flow, Layout, Mesh, Undefined};
 use piaffe_model::motion::{HalfStep, Motion};
-use piaffe_model::{Gait, UP};
+use piaffe_model::{Description, Gait, Mode, UP};
 use piaffe_sqp::dot;
 
 /// Intervals per half step at whose ends the motion is looked at.
@@ -11,7 +11,9 @@ const INSTANTS: usize = 500;
 
 /// One half step, from just after a landing to just after the next one.
 pub struct Passage {
-    pub leg: usize,
+    /// Which of the gait's.
+    pub index: usize,
+    pub mode: Mode,
     pub duration: f64,
     /// ∂(β, σ) at the end by (β, σ) at the beginning: rows β, σ.
     pub flow: [[f64; 2]; 2],
@@ -70,34 +72,35 @@ impl Passage {
     pub fn new(gait: &dyn Gait, motion: &Motion, k: usize) -> Result<Passage, Undefined> {
         let d = gait.description();
         let next = (k + 1) % motion.half_steps.len();
-        let leg = stance_leg(d, k);
+        let mode = d.phases[k].mode;
         let half_step = &motion.half_steps[k];
         let mesh = Mesh::new(elements(d), d.polynomial_order);
-        let layout = Layout::new(d, &mesh.basis);
-        let parameters = parameters(gait, half_step, leg, &layout);
-        let mut stance = Stance::new(d, &mesh, leg);
-        stance.integrate(gait, leg, &mesh, &parameters)?;
-        stance.differentiate(gait, leg, &mesh, &parameters);
+        let layout = Layout::new(d, k, &mesh.basis);
+        let parameters = parameters(gait, half_step, mode, &layout);
+        let mut flow = Flow::new(d, &mesh, k);
+        flow.integrate(gait, mode, &mesh, &parameters)?;
+        flow.differentiate(gait, mode, &mesh, &parameters);
         let last = mesh.nodes.len() - 1;
         let row = |of: &[f64]| [layout.beta(), layout.sigma()].map(|p| of[last * layout.len() + p]);
 
-        let mut at = stance::State::new(d, leg);
+        let mut at = flow::State::new(d, mode);
         let mut instant = |share: f64| {
-            stance.at(gait, leg, &mesh, &parameters, share, &mut at)?;
-            let state = State { q: at.q.clone(), qd: at.qd.clone(), qdd: acceleration(gait, leg, &at) };
+            flow.at(gait, mode, &mesh, &parameters, share, &mut at)?;
+            let state = State { q: at.q.clone(), qd: at.qd.clone(), qdd: acceleration(gait, mode, &at) };
             Ok(Instant { time: share * half_step.duration, state, sigma: at.sigma })
         };
         let instants: Result<Vec<Instant>, Undefined> =
             (0..=INSTANTS).map(|i| instant(i as f64 / INSTANTS as f64)).collect();
         let instants = instants?;
-        let (by_beta, by_sigma, _) = stance.partials(last);
+        let (by_beta, by_sigma, _) = flow.partials(last);
         Ok(Passage {
-            leg,
+            index: k,
+            mode,
             duration: half_step.duration,
-            flow: [row(&stance.beta_p), row(&stance.sigma_p)],
-            landing: Landing::new(gait, leg, instant(1.0)?.state, [by_beta, by_sigma]),
+            flow: [row(&flow.beta_p), row(&flow.sigma_p)],
+            landing: Landing::new(gait, mode, instant(1.0)?.state, [by_beta, by_sigma]),
             instants,
-            next: Start::new(gait, &motion.half_steps[next], stance_leg(d, next)),
+            next: Start::new(gait, &motion.half_steps[next], d.phases[next].mode),
         })
     }
 
@@ -113,7 +116,7 @@ impl Passage {
 }
 
 /// Local parameters of a half step: see `stance`.
-fn parameters(gait: &dyn Gait, h: &HalfStep, leg: usize, layout: &Layout) -> Vec<f64> {
+fn parameters(gait: &dyn Gait, h: &HalfStep, mode: Mode, layout: &Layout) -> Vec<f64> {
     let mut parameters = vec![0.0; layout.len()];
     for j in 0..layout.prescribed {
         let own = &mut parameters[layout.joint(j, 0)..][..layout.per_joint];
@@ -123,19 +126,20 @@ fn parameters(gait: &dyn Gait, h: &HalfStep, leg: usize, layout: &Layout) -> Vec
     }
     parameters[layout.duration()] = h.duration;
     parameters[layout.beta()] = h.beta_initial;
-    parameters[layout.sigma()] = Start::new(gait, h, leg).sigma;
+    parameters[layout.sigma()] = Start::new(gait, h, mode).sigma;
     parameters
 }
 
 impl Landing {
-    fn new(gait: &dyn Gait, leg: usize, state: State, betad: [f64; 2]) -> Landing {
+    fn new(gait: &dyn Gait, mode: Mode, state: State, betad: [f64; 2]) -> Landing {
         let d = gait.description();
-        let mut placement = d.shapes.placement.zeros();
-        gait.placement(leg, &state.q, &mut placement);
+        let mut placement = d.shape(mode).placement.zeros();
+        gait.placement(mode, &state.q, &mut placement);
         let mut touchdown = d.shapes.touchdown.zeros();
-        gait.touchdown(1 - leg, &state.q, &state.qd, &mut touchdown);
+        let lands = mode.swinging().next().unwrap_or_default();
+        gait.touchdown(lands, &state.q, &state.qd, &mut touchdown);
         Landing {
-            height: d.shapes.placement.swing_q.row(&placement, UP).to_vec(),
+            height: d.shape(mode).placement.swing_q.row(&placement, UP).to_vec(),
             impact: d.shapes.touchdown.qd_plus_w.of(&touchdown).to_vec(),
             state,
             betad,
@@ -155,37 +159,37 @@ impl Landing {
 }
 
 impl Start {
-    fn new(gait: &dyn Gait, h: &HalfStep, leg: usize) -> Start {
+    fn new(gait: &dyn Gait, h: &HalfStep, mode: Mode) -> Start {
         let d = gait.description();
         let (q, qd) = (d.complete(&h.q_initial, h.beta_initial), d.complete(&h.qd_initial, h.betad_initial));
-        let mut momentum = d.shapes.momentum.zeros();
-        gait.momentum(leg, &q, &qd, &mut momentum);
-        let mut terms = d.shapes.momentum_terms.zeros();
-        gait.momentum_terms(leg, &q, &qd, &mut terms);
-        let (by_q, by_qd) = d.shapes.momentum.sigma_w.of(&momentum).split_at(q.len());
+        let mut momentum = d.shape(mode).momentum.zeros();
+        gait.momentum(mode, &q, &qd, &mut momentum);
+        let mut terms = d.shape(mode).momentum_terms.zeros();
+        gait.momentum_terms(mode, &q, &qd, &mut terms);
+        let (by_q, by_qd) = d.shape(mode).momentum.sigma_w.of(&momentum).split_at(q.len());
         Start {
             qd,
-            sigma: d.shapes.momentum.sigma.value(&momentum),
-            sigmad: d.shapes.momentum_terms.sigmadot.value(&terms),
+            sigma: d.shape(mode).momentum.sigma.value(&momentum),
+            sigmad: d.shape(mode).momentum_terms.sigmadot.value(&terms),
             by_q: by_q.to_vec(),
             by_qd: by_qd.to_vec(),
         }
     }
 }
 
-/// Values of all coordinates with the names that they have in the next half step.
-pub fn with_next_names(gait: &dyn Gait, values: &[f64]) -> Vec<f64> {
+/// Values of all coordinates with the names that they have in the phase after `phase`.
+pub fn with_next_names(d: &Description, phase: usize, values: &[f64]) -> Vec<f64> {
     let name = |k| {
-        let (from, sign) = renamed(gait.description(), k);
+        let (from, sign) = d.renamed(phase, k);
         sign * values[from]
     };
     (0..values.len()).map(name).collect()
 }
 
 /// q̈, with β̈ by eq. 10.
-fn acceleration(gait: &dyn Gait, leg: usize, at: &stance::State) -> Vec<f64> {
+fn acceleration(gait: &dyn Gait, mode: Mode, at: &flow::State) -> Vec<f64> {
     let d = gait.description();
-    let mut inverse = d.shapes.inverse.zeros();
-    gait.inverse(leg, &at.q, &at.qd, &at.prescribed[2], &mut inverse);
-    d.shapes.inverse.xdd.of(&inverse)[d.positions()..].to_vec()
+    let mut inverse = d.shape(mode).inverse.zeros();
+    gait.inverse(mode, &at.q, &at.qd, &at.prescribed[2], &mut inverse);
+    d.shape(mode).inverse.xdd.of(&inverse)[d.positions()..].to_vec()
 }

@@ -19,7 +19,7 @@
 
 use super::halving;
 use super::passage::{Instant, Passage};
-use piaffe_model::{FORWARD, Gait, Rotation, UP};
+use piaffe_model::{FORWARD, Gait, Mode, Rotation, UP};
 use serde::{Deserialize, Serialize};
 
 /// The return map of the speed along the path, or why there is none.
@@ -100,12 +100,12 @@ fn phase(gait: &dyn Gait, passages: &[Passage]) -> Option<String> {
         |joint| joint.name,
     );
     let turning = |p: &Passage, i: &Instant| {
-        let [at, rate] = platform(gait, p.leg, i);
+        let [at, rate] = platform(gait, p.mode, i);
         at[1] * rate[0] - at[0] * rate[1]
     };
     let rates: [(&str, &Rate); 4] = [
-        ("forward position of the platform from the stance foot", &|p, i| platform(gait, p.leg, i)[1][0]),
-        ("forward position of the mass centre from the stance foot", &|p, i| mass_centre_speed(gait, p.leg, i)),
+        ("forward position of the platform from the stance foot", &|p, i| platform(gait, p.mode, i)[1][0]),
+        ("forward position of the mass centre from the stance foot", &|p, i| mass_centre_speed(gait, p.mode, i)),
         ("angle of the line from the stance foot to the platform", &turning),
         (free, &|_, i| i.state.qd[d.unactuated]),
     ];
@@ -118,22 +118,22 @@ fn phase(gait: &dyn Gait, passages: &[Passage]) -> Option<String> {
 }
 
 /// Platform's mass centre from the stance foot and its velocity, forward and up; m, m/s.
-fn platform(gait: &dyn Gait, leg: usize, i: &Instant) -> [[f64; 2]; 2] {
+fn platform(gait: &dyn Gait, mode: Mode, i: &Instant) -> [[f64; 2]; 2] {
     let d = gait.description();
-    let mut placement = d.shapes.placement.zeros();
-    gait.placement(leg, &i.state.q, &mut placement);
+    let mut placement = d.shape(mode).placement.zeros();
+    gait.placement(mode, &i.state.q, &mut placement);
     let mut velocity = vec![0.0; d.positions()];
-    gait.platform_velocity(leg, &i.state.q, &i.state.qd, &mut velocity);
-    [d.shapes.placement.p.of(&placement), &velocity].map(|v| [v[FORWARD], v[UP]])
+    gait.platform_velocity(mode, &i.state.q, &i.state.qd, &mut velocity);
+    [d.shape(mode).placement.p.of(&placement), &velocity].map(|v| [v[FORWARD], v[UP]])
 }
 
 /// Forward speed of the robot's mass centre, m/s.
-fn mass_centre_speed(gait: &dyn Gait, leg: usize, i: &Instant) -> f64 {
+fn mass_centre_speed(gait: &dyn Gait, mode: Mode, i: &Instant) -> f64 {
     let d = gait.description();
     let nc = d.positions();
     let whole = |[p, q]: [&[f64]; 2]| [p, q].concat();
     let mut velocity = vec![0.0; nc];
-    gait.platform_velocity(leg, &i.state.q, &i.state.qd, &mut velocity);
+    gait.platform_velocity(mode, &i.state.q, &i.state.qd, &mut velocity);
     let mut centre = d.shapes.centre_of_mass.zeros();
     gait.centre_of_mass(&whole([&vec![0.0; nc], &i.state.q]), &whole([&velocity, &i.state.qd]), &mut centre);
     d.shapes.centre_of_mass.velocity.of(&centre)[FORWARD]

@@ -73,8 +73,8 @@ fn across_landing(gait: &dyn Gait, passage: &Passage, beta: f64, sigma: f64, clo
     q[unactuated] += beta;
     qd[unactuated] += landing.betad[0] * beta + landing.betad[1] * sigma;
 
-    let qd = with_next_names(gait, &landing.impact(&q, &qd));
-    let q = with_next_names(gait, &q);
+    let qd = with_next_names(gait.description(), passage.index, &landing.impact(&q, &qd));
+    let q = with_next_names(gait.description(), passage.index, &q);
     // By how much the next references are ahead when they begin.
     let ahead = if clock == Clock::RunsOn { late } else { 0.0 };
     let deviation: Vec<f64> = q.iter().zip(&next.qd).map(|(q, rate)| q - rate * ahead).collect();

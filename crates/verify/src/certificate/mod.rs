@@ -196,7 +196,7 @@ fn at_ends(
     };
     let [first, last] = [at(0.0, start), at(1.0, end)];
     proof.note(Constraint::Touchdown, &(-last.swing.y.abs() / units.leg.into()), [1.0, 1.0]);
-    units.duration(instants.numbers(), half_step.duration, |constraint, margin| {
+    units.duration(instants.numbers(), index, half_step.duration, |constraint, margin| {
         proof.note(constraint, &margin, [1.0, 1.0]);
     });
     last.platform.x - first.platform.x

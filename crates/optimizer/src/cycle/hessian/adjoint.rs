@@ -2,15 +2,15 @@
 
 use super::PhaseWork;
 use crate::cycle::phase::Phase;
-use crate::cycle::problem::CLOSURE;
+use crate::flow::{Flow, Mesh};
 use crate::lgl::NODES;
-use crate::stance::{Mesh, Stance};
+use crate::swing::Of;
 use piaffe_model::units::Units;
 use piaffe_model::{Description, FORWARD, UP};
 
 impl PhaseWork {
     /// Multipliers of the collocation equations, from the last element to the first.
-    pub(super) fn adjoint(&mut self, d: &Description, units: &Units, p: &Phase, lambda: &[f64], k: usize) {
+    pub(super) fn adjoint(&mut self, d: &Description, units: &Units, p: &Phase, [beta, sigma]: [f64; 2]) {
         let nodes = p.mesh.nodes.len();
         self.omega.clear();
         self.omega.resize(nodes, [0.0; 2]);
@@ -18,14 +18,14 @@ impl PhaseWork {
         self.direct.clear();
         for node in 0..nodes {
             let direct = self.direct(d, p, node);
-            let (by_beta, by_sigma, _) = p.stance.partials(node);
+            let (by_beta, by_sigma, _) = p.flow.partials(node);
             self.direct.push(direct);
             self.stationarity.push([direct[0] + direct[1] * by_beta, direct[1] * by_sigma]);
         }
         let last = p.last();
-        self.stationarity[last][0] -= lambda[CLOSURE * k];
-        self.stationarity[last][1] -= lambda[CLOSURE * k + 1] / units.angular_momentum();
-        p.stance.adjoint(&p.mesh, p.duration(), &mut self.stationarity, &mut self.omega);
+        self.stationarity[last][0] -= beta;
+        self.stationarity[last][1] -= sigma / units.angular_momentum();
+        p.flow.adjoint(&p.mesh, p.duration(), &mut self.stationarity, &mut self.omega);
     }
 
     /// ∂L/∂β and ∂L/∂β̇ through the quantities of a node, β̈ eliminated; and the balance's multiplier.
@@ -45,6 +45,20 @@ impl PhaseWork {
             betad += weight * entry(row, 1);
             betadd += weight * entry(row, 2);
         }
+        for foot in 0..y.feet() {
+            let (factor, weight) = self.of_clearance(p, node, foot);
+            if weight == 0.0 {
+                continue;
+            }
+            let (row, weight) = (p.instants.of_foot(&p.mesh, node, foot, factor.of), weight * factor.value);
+            beta += weight * entry(row, 0);
+            if factor.of != Of::Height {
+                betad += weight * entry(row, 1);
+            }
+            if factor.of == Of::Acceleration {
+                betadd += weight * entry(row, 2);
+            }
+        }
         let row = p.instants.balance(node);
         let balance = -betadd / entry(row, 2);
         beta += balance * entry(row, 0);
@@ -53,15 +67,7 @@ impl PhaseWork {
             beta += w[y.angle(d.unactuated)];
             betad += w[y.rate(d.unactuated)];
         }
-        let (height, velocity) = self.swing_weights(p, node);
-        if velocity != 0.0 {
-            let end = usize::from(node == p.last());
-            let row = p.shapes.swing_velocity.v_w.row(p.instants.swing_velocity(end), UP);
-            beta += velocity * entry(row, 0);
-            betad += velocity * entry(row, 1);
-        }
         let (placement, shape) = (p.instants.placement(node), &p.shapes.placement);
-        beta += height * placement[shape.swing_q.index(UP, d.unactuated)];
         beta += self.travel_weight(p, node) * placement[shape.p_q.index(FORWARD, d.unactuated)];
         beta += w[y.height()] * placement[shape.p_q.index(UP, d.unactuated)];
         for (weight, row) in w[y.heights()].iter().zip(p.instants.heights(node)) {
@@ -71,7 +77,7 @@ impl PhaseWork {
     }
 }
 
-impl Stance {
+impl Flow {
     /// Backward sweep: `stationarity` holds ∂L/∂(β, σ) per node at fixed rates; on return `omega`, zero before, holds the
     /// weights of T β̇ and T σ̇.
     fn adjoint(&self, mesh: &Mesh, t: f64, stationarity: &mut [[f64; 2]], omega: &mut [[f64; 2]]) {

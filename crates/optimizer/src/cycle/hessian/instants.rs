@@ -1,11 +1,12 @@
 //! Second-order terms of all instants, in the local parameters of a half step: `Uᵀ G U` at every node, products of
 //! gradients where criterion and constraints are no linear functions of the quantities, and T times everything.
 
+use super::PhaseWork;
 use super::products::{cross_duration, product, square};
-use super::{PhaseWork, Workspace};
 use crate::cycle::Cycle;
 use crate::cycle::phase::Phase;
 use crate::lgl::NODES;
+use crate::swing::Of;
 use piaffe_model::{Description, Gait};
 use piaffe_sqp::dot;
 use std::array::from_fn;
@@ -14,14 +15,16 @@ use std::array::from_fn;
 const REACH: f64 = 0.3;
 
 impl Cycle<'_> {
-    /// Second-order terms of all instants of half step `k`, in the local parameters.
-    pub(super) fn instant_terms(&self, k: usize, mu: &[f64], work: &mut Workspace) {
+    /// Second-order terms of all instants of phase `k`, in the local parameters.
+    pub(super) fn instant_terms(&self, k: usize, mu: &[f64], work: &mut PhaseWork) {
         let d = self.description();
         let p = &self.phases[k];
         let t = p.duration();
-        let h = &mut work.h_local;
+        let mut matrix = std::mem::take(&mut work.h);
+        let h = &mut matrix;
         for node in 0..p.mesh.nodes.len() {
-            work.phase.node(self.gait, d, p, node, h);
+            work.node(self.gait, d, p, node, h);
+            work.by_durations(d, p, node, h);
         }
         // Products of quantities: squares of torques, torque times rate, cones.
         let scale = t * self.per_work();
@@ -54,12 +57,10 @@ impl Cycle<'_> {
             let weight = kink.weight / (1.0 + moved * moved).sqrt();
             square(h, g, weight * scale);
         }
-        self.weighted_path_rows(mu, |phase, node, constraint, multiplier| {
-            if phase == k {
-                constraint.curvature(p.linearized(node), |a, b, second| {
-                    product(h, p.instants.gradient(node, a), p.instants.gradient(node, b), -0.5 * multiplier * second);
-                });
-            }
+        self.weighted_path_rows(k, mu, |node, constraint, multiplier| {
+            constraint.curvature(p.linearized(node), |a, b, second| {
+                product(h, p.instants.gradient(node, a), p.instants.gradient(node, b), -0.5 * multiplier * second);
+            });
         });
         self.weighted_dips(k, mu, |dip, multiplier| {
             // The minimum moves: its slope's gradient twice, over the curvature in s.
@@ -67,7 +68,7 @@ impl Cycle<'_> {
             slope.fill(0.0);
             for (i, (share, by)) in dip.lowest.shape.iter().zip(&dip.lowest.slopes).enumerate() {
                 let node = dip.first() + i;
-                let (constraint, y) = (&self.path[dip.constraint], p.linearized(node));
+                let (constraint, y) = (&p.path[dip.constraint], p.linearized(node));
                 constraint.partials(y, |quantity, partial| {
                     slope.iter_mut().zip(p.instants.gradient(node, quantity)).for_each(|(s, g)| *s += by * partial * g);
                 });
@@ -78,37 +79,47 @@ impl Cycle<'_> {
             }
             square(h, slope, multiplier / dip.lowest.curvature);
         });
+        work.h = matrix;
     }
 }
 
 impl PhaseWork {
     /// Adds `Uᵀ G U` of one node and the curvature of Q, Q̇, Q̈ in the parameters.
     fn node(&mut self, gait: &dyn Gait, d: &Description, p: &Phase, node: usize, h: &mut [f64]) {
-        let (nq, nj, nc) = (d.orientations(), d.joints(), d.positions());
+        let (nq, nj) = (d.orientations(), d.joints());
         let (layout, t) = (p.layout, p.duration());
         let (np, m, nt) = (layout.len(), layout.per_joint, layout.prescribed);
         let y = p.instants.quantities;
         let w = &self.weights[node * y.len()..][..y.len()];
         let [_, betad_weight, balance] = self.direct[node];
         let [omega_beta, omega_sigma] = self.omega[node];
-        let f1 = p.stance.inertia(node);
+        let f1 = p.flow.inertia(node);
         let chi = -(betad_weight + t * omega_beta) / f1;
         let kappa = t * omega_sigma;
         let shape = &p.shapes.curvature;
         shape.n.torque.of_mut(&mut self.n).copy_from_slice(&w[y.torque(0)..][..nj]);
         self.n[shape.n.balance.place(0)] = balance;
-        let (height, velocity) = self.swing_weights(p, node);
+        self.others.fill(0.0);
         self.others[shape.others.sigma.place(0)] = chi;
-        self.others[shape.others.sigmad.place(0)] = kappa;
-        self.others[shape.others.swing_height.place(0)] = height;
+        // In flight σ̇ = 0, whatever its weight.
+        shape.others.sigmad.of_mut(&mut self.others).fill(kappa);
         self.others[shape.others.platform_x.place(0)] = self.travel_weight(p, node);
-        self.others[shape.others.swing_velocity.place(0)] = velocity;
         self.others[shape.others.platform_height.place(0)] = w[y.height()];
+        let mut lift = None;
+        for foot in 0..y.feet() {
+            let (factor, weight) = self.of_clearance(p, node, foot);
+            let weight = weight * factor.value;
+            match factor.of {
+                Of::Height => self.others[shape.others.swing_height.place(foot)] = weight,
+                Of::Velocity => self.others[shape.others.swing_velocity.place(foot)] = weight,
+                Of::Acceleration => lift = Some((p.instants.swings[foot].leg, weight)),
+            }
+        }
         let [q, qd, qdd] = p.instants.state(d, node);
-        gait.curvature(p.leg, q, qd, qdd, &self.n, &w[y.force(0)..][..nc], &self.others, &mut self.out);
+        gait.curvature(p.mode, q, qd, qdd, &self.n, &w[y.force(0)..][..y.components()], &self.others, &mut self.out);
         let heights = &w[y.heights()];
         if heights.iter().any(|w| *w != 0.0) {
-            gait.heights_curvature(p.leg, q, heights, &mut self.heights);
+            gait.heights_curvature(p.mode, q, heights, &mut self.heights);
             let of = &p.shapes.heights_curvature;
             for (to, from) in [(shape.gradient, of.gradient), (shape.q_q, of.q_q)] {
                 let (to, from) = (to.of_mut(&mut self.out), from.of(&self.heights));
@@ -117,8 +128,14 @@ impl PhaseWork {
         }
         let shared = &w[y.shared()];
         if shared.iter().any(|w| *w != 0.0) {
-            gait.sharing_curvature(p.leg, q, qd, qdd, shared, &mut self.shared);
+            gait.sharing_curvature(p.mode, q, qd, qdd, shared, &mut self.shared);
             self.out.iter_mut().zip(&self.shared).for_each(|(out, shared)| *out += shared);
+        }
+        if let Some((leg, weight)) = lift {
+            let of = &d.shapes.takeoff_curvature;
+            self.of_takeoff[of.weights.lift.place(0)] = weight;
+            gait.takeoff_curvature(leg, q, qd, qdd, &self.of_takeoff, &mut self.takeoff);
+            self.out.iter_mut().zip(&self.takeoff).for_each(|(out, takeoff)| *out += takeoff);
         }
         let gradient = shape.gradient.of(&self.out);
         let [q_q, q_qd, q_qdd, qd_qd] =
@@ -129,10 +146,10 @@ impl PhaseWork {
             Block { q_q: q_q[ij], q_qd: q_qd[ij], qd_q: q_qd[ji], q_qdd: q_qdd[ij], qdd_q: q_qdd[ji], qd_qd: qd_qd[ij] }
         };
         let basis = &p.instants.basis[node * m..][..m];
-        let by_t = p.stance.prescribed.by_duration(node);
+        let by_t = p.flow.prescribed.by_duration(node);
         let beta = d.unactuated;
         let sensitivity =
-            [&p.stance.beta_p, &p.stance.betad_p, &p.instants.betadd_p].map(|table| &table[node * np..][..np]);
+            [&p.flow.beta_p, &p.flow.betad_p, &p.instants.betadd_p].map(|table| &table[node * np..][..np]);
 
         // Prescribed coordinates with each other: sparse in the parameters.
         let mut tt = 0.0;
@@ -189,17 +206,9 @@ impl PhaseWork {
                 *slot += x0 * s0 + x1 * s1 + x2 * s2;
             }
         }
-        // ω T σ̇, and T times the vertical velocity at the ends.
-        if node <= p.last() {
-            p.stance.moment_gradient(node, t, &mut self.scratch);
-            cross_duration(h, &self.scratch, omega_sigma, layout.duration());
-        }
-        if velocity != 0.0 {
-            let weight = w[y.clearance()] / t;
-            self.scratch.copy_from_slice(p.instants.gradient(node, y.clearance()));
-            self.scratch[layout.duration()] -= p.linearized(node)[y.clearance()] / t;
-            cross_duration(h, &self.scratch, weight, layout.duration());
-        }
+        // ω T σ̇.
+        p.flow.moment_gradient(node, t, &mut self.scratch);
+        cross_duration(h, &self.scratch, omega_sigma, layout.duration());
 
         // Second derivatives of Q, Q̇, Q̈ themselves, weighted with ∂L/∂(Q, Q̇, Q̈).
         for jj in 0..nt {
@@ -225,15 +234,54 @@ impl PhaseWork {
         }
     }
 
+    /// What depends on durations beside the state: factors of clearances, and in flight the mass centre's parabola.
+    fn by_durations(&mut self, d: &Description, p: &Phase, node: usize, h: &mut [f64]) {
+        let (np, y, layout) = (p.layout.len(), p.instants.quantities, p.layout);
+        let w = &self.weights[node * y.len()..][..y.len()];
+        let durations: smallvec::SmallVec<[usize; 4]> = layout.durations().collect();
+        let mut height: f64 = w[y.height()] + w[y.heights()].iter().sum::<f64>();
+        for foot in 0..y.feet() {
+            let (factor, weight) = self.of_clearance(p, node, foot);
+            if factor.of == Of::Height {
+                height += weight * factor.value;
+            }
+            if weight == 0.0 || factor.by.is_empty() {
+                continue;
+            }
+            // The clearance is factor · made_of.
+            let made_of = p.linearized(node)[y.clearance(foot)] / factor.value;
+            self.scratch.copy_from_slice(p.instants.gradient(node, y.clearance(foot)));
+            for (at, by) in durations.iter().zip(&factor.by) {
+                self.scratch[*at] -= made_of * by;
+            }
+            for (at, by) in durations.iter().zip(&factor.by) {
+                cross_duration(h, &self.scratch, weight * by / factor.value, *at);
+            }
+            for (i, row) in durations.iter().enumerate() {
+                for (j, column) in durations.iter().enumerate() {
+                    h[row * np + column] += 0.5 * weight * made_of * factor.second[i * durations.len() + j];
+                }
+            }
+        }
+        let Some(fall) = p.fall(d) else { return };
+        if node == p.last() {
+            height += self.landing;
+        }
+        let weights = [height, self.travel_weight(p, node)];
+        fall.second_derivatives(p.mesh.nodes[node].0, weights, |other, second| {
+            h[layout.duration() * np + other] += second;
+        });
+    }
+
     /// T times the integral of the criterion.
-    pub(super) fn bilinear(&mut self, p: &Phase, h: &mut [f64], per_work: f64) {
+    pub(super) fn bilinear(&mut self, p: &Phase, per_work: f64) {
         self.scratch.fill(0.0);
         for (node, quantity, partial) in &p.cost.partials {
             for (s, g) in self.scratch.iter_mut().zip(p.instants.gradient(*node, *quantity)) {
                 *s += partial * g;
             }
         }
-        cross_duration(h, &self.scratch, per_work, p.layout.duration());
+        cross_duration(&mut self.h, &self.scratch, per_work, p.layout.duration());
     }
 }
 

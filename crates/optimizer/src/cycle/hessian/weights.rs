@@ -3,11 +3,10 @@
 use super::PhaseWork;
 use crate::cycle::Cycle;
 use crate::cycle::phase::Phase;
-use crate::cycle::problem::{CLOSURE, equalities};
-use crate::instant::direction;
+use crate::swing::Factor;
 
 impl Cycle<'_> {
-    /// ∂L/∂(quantities) of half step `k`, and the gradient of its part of L.
+    /// ∂L/∂(quantities) of phase `k`, and the gradient of its part of L.
     pub(super) fn weigh(&self, k: usize, lambda: &[f64], mu: &[f64], work: &mut PhaseWork) {
         let p = &self.phases[k];
         let count = p.instants.quantities.len();
@@ -19,27 +18,26 @@ impl Cycle<'_> {
             work.weights[node * count + quantity] += t * partial * per_work;
         }
         let weights = &mut work.weights;
-        self.weighted_path_rows(mu, |phase, node, constraint, multiplier| {
-            if phase == k {
-                constraint.partials(p.linearized(node), |quantity, partial| {
-                    weights[node * count + quantity] -= multiplier * partial
-                });
-            }
+        self.weighted_path_rows(k, mu, |node, constraint, multiplier| {
+            constraint.partials(p.linearized(node), |quantity, partial| {
+                weights[node * count + quantity] -= multiplier * partial
+            });
         });
         self.weighted_dips(k, mu, |dip, multiplier| {
             for (i, share) in dip.lowest.shape.iter().enumerate() {
                 let node = dip.first() + i;
-                self.path[dip.constraint].partials(p.linearized(node), |quantity, partial| {
+                p.path[dip.constraint].partials(p.linearized(node), |quantity, partial| {
                     weights[node * count + quantity] -= multiplier * share * partial
                 });
             }
         });
-        let held = self.holding().zip(&lambda[equalities(self.description())..]);
-        for ((_, joint, node), multiplier) in held.filter(|((phase, ..), _)| *phase == k) {
-            weights[node * count + p.instants.quantities.rate(joint)] -= multiplier / self.units.rate();
+        for (row, (_, joint, node)) in self.rows.holding().filter(|(_, (phase, ..))| *phase == k) {
+            weights[node * count + p.instants.quantities.rate(joint)] -= lambda[row] / self.units.rate();
         }
         let speed = lambda[self.speed_equation()];
         work.travel = -speed / self.units.length;
+        let touchdown = self.rows.of(k).touchdown.map_or(0.0, |row| lambda[row]);
+        work.landing = -touchdown / self.units.length;
 
         // Gradient in the local parameters: all rows with their weights.
         let np = p.layout.len();
@@ -53,29 +51,28 @@ impl Cycle<'_> {
             }
         }
         let last = p.last() * np;
+        let [beta, sigma] = self.closures(k, lambda);
         let terminal = [
             (work.travel, &p.travel_p[..]),
-            (-lambda[CLOSURE * k], &p.stance.beta_p[last..][..np]),
-            (-lambda[CLOSURE * k + 1] / self.units.angular_momentum(), &p.stance.sigma_p[last..][..np]),
+            (-beta, &p.flow.beta_p[last..][..np]),
+            (-sigma / self.units.angular_momentum(), &p.flow.sigma_p[last..][..np]),
         ];
         for (w, row) in terminal {
             gradient.iter_mut().zip(row).for_each(|(g, r)| *g += w * r);
         }
         gradient[p.layout.duration()] += p.cost.value * per_work;
+        if let Some(fall) = p.fall(self.description()) {
+            fall.add_height_gradient(1.0, work.landing, gradient);
+        }
     }
 }
 
 impl PhaseWork {
-    /// Weights of the swing foot's height and vertical velocity that the clearance stands for.
-    pub(super) fn swing_weights(&self, p: &Phase, node: usize) -> (f64, f64) {
+    /// What the clearance of a foot at a node is made of, and the clearance's weight.
+    pub(super) fn of_clearance(&self, p: &Phase, node: usize, foot: usize) -> (Factor, f64) {
         let y = p.instants.quantities;
-        let w = self.weights[node * y.len() + y.clearance()];
-        if node == 0 || node == p.last() {
-            (0.0, w * direction(usize::from(node == p.last())) * p.duration())
-        } else {
-            let s = p.mesh.nodes[node].0;
-            (w / (4.0 * s * (1.0 - s)), 0.0)
-        }
+        let factor = p.instants.factor(&p.mesh, &p.parameters, node, foot);
+        (factor, self.weights[node * y.len() + y.clearance(foot)])
     }
 
     /// Weight of the platform's x at a node.

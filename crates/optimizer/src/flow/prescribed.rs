@@ -1,46 +1,9 @@
-//! The prescribed coordinates Q(t) (eq. 15) and the parameters of a half step that they are made of.
+//! The prescribed coordinates Q(t) (eq. 15).
 
-use super::Mesh;
+use super::{Layout, Mesh};
 use crate::trajectory::{Basis, Jet};
-use piaffe_model::Description;
-
-/// Numbers of things in a half step's parameter vector.
-#[derive(Clone, Copy, Debug)]
-pub struct Layout {
-    pub prescribed: usize,
-    /// Basis parameters per coordinate.
-    pub per_joint: usize,
-}
 
 impl Layout {
-    pub fn new(description: &Description, basis: &Basis) -> Layout {
-        Layout { prescribed: description.prescribed(), per_joint: basis.len() }
-    }
-
-    pub fn joint(&self, k: usize, parameter: usize) -> usize {
-        k * self.per_joint + parameter
-    }
-
-    pub fn duration(&self) -> usize {
-        self.prescribed * self.per_joint
-    }
-
-    pub fn beta(&self) -> usize {
-        self.duration() + 1
-    }
-
-    pub fn sigma(&self) -> usize {
-        self.duration() + 2
-    }
-
-    pub fn len(&self) -> usize {
-        self.duration() + 3
-    }
-
-    pub fn is_empty(&self) -> bool {
-        false
-    }
-
     /// Q, Q̇ and Q̈ (eq. 15) of prescribed coordinate `k`, and the derivatives of each in T.
     pub(super) fn coordinate(&self, k: usize, jet: &Jet, parameters: &[f64]) -> ([f64; 3], [f64; 3]) {
         let t = parameters[self.duration()];

@@ -1,31 +1,37 @@
-//! Single support: (β, σ) integrated over the half step, with sensitivities (eq. 8–10, 20–24).
+//! What is not prescribed, over a phase: (β, σ), integrated with sensitivities (eq. 8–10, 20–24), and in flight the mass centre's
+//! parabola.
 //!
-//! With Q(t) known, `β̇ = (σ − f2)/f1` and `σ̇ = moment of gravity`. On s = t/T the interval is cut
+//! With Q(t) known, `β̇ = (σ − f2)/f1` and `σ̇ = moment of gravity`, which is zero in flight. On s = t/T the interval is cut
 //! into equal elements with five Lobatto nodes each (order 8). The nodes are also where torques and
 //! reactions are evaluated, and their quadrature is that of the criteria. Sensitivities in all
 //! parameters are those of the discrete equations: exact to rounding.
 //!
-//! Parameters of a half step ("local"): per prescribed coordinate the basis parameters of its
-//! polynomial (rates not multiplied by T), then T, β(0), σ(0).
+//! Parameters of a phase ("local"): per prescribed coordinate the basis parameters of its polynomial (rates not multiplied by
+//! T), then T, β(0), σ(0); in flight where the mass centre starts, and how fast; and the durations of other phases, where a foot's
+//! swing lasts longer than this one.
 
+mod fall;
+mod layout;
 mod mesh;
 mod prescribed;
 mod system;
 
+pub use fall::Fall;
+pub use layout::Layout;
 pub use mesh::Mesh;
-pub use prescribed::{Layout, Prescribed, basis_derivatives};
+pub use prescribed::{Prescribed, basis_derivatives};
 pub use system::System;
 
 use crate::lgl::NODES;
 use piaffe_model::shape::LateGradient;
 use piaffe_model::units::Units;
-use piaffe_model::{Description, Gait};
+use piaffe_model::{Description, Gait, Mode};
 
 /// A motion that the equations do not admit.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Undefined {
     #[error(
-        "the inertia about the stance foot vanishes (f1 → 0): the unactuated coordinate cannot be driven in this posture"
+        "the inertia about the stance foot or, in flight, the mass centre vanishes (f1 → 0): the unactuated coordinate cannot be driven in this posture"
     )]
     NoInertia,
     #[error("the unactuated coordinate runs away: no motion with these joint trajectories")]
@@ -34,9 +40,9 @@ pub enum Undefined {
     NotFinite,
 }
 
-/// The solution of one half step. Matrices are row-major, one row of local parameters per collocation node.
+/// The solution of one phase. Matrices are row-major, one row of local parameters per collocation node.
 #[derive(Clone, Debug)]
-pub struct Stance {
+pub struct Flow {
     pub beta: Vec<f64>,
     pub sigma: Vec<f64>,
     pub betad: Vec<f64>,
@@ -71,13 +77,15 @@ const VANISHING: [f64; 2] = [1e-3, 1e-6];
 /// No motion turns so far, rad.
 const FARTHEST: f64 = 20.0;
 
-impl Stance {
-    pub fn new(description: &Description, mesh: &Mesh, leg: usize) -> Stance {
-        let layout = Layout::new(description, &mesh.basis);
+impl Flow {
+    /// For phase `k` of the gait.
+    pub fn new(description: &Description, mesh: &Mesh, k: usize) -> Flow {
+        let layout = Layout::new(description, k, &mesh.basis);
+        let shapes = description.shape(description.phases[k].mode);
         let n = mesh.nodes.len();
         let table = || vec![0.0; mesh.nodes.len() * layout.len()];
-        let early_length = description.early[leg];
-        Stance {
+        let early_length = shapes.early.len;
+        Flow {
             beta: vec![0.0; n],
             sigma: vec![0.0; n],
             betad: vec![0.0; n],
@@ -89,8 +97,8 @@ impl Stance {
             moment_p: table(),
             late: vec![[0.0; 6]; n],
             early: vec![0.0; n * early_length],
-            gradient: description.shapes.late_gradient.zeros(),
-            shape: description.shapes.late_gradient,
+            gradient: shapes.late_gradient.zeros(),
+            shape: shapes.late_gradient,
             prescribed: Prescribed::new(layout.prescribed, n),
             early_length,
             layout,
@@ -102,26 +110,26 @@ impl Stance {
     ///
     /// # Errors
     /// If f1 comes near zero or changes sign, or the collocation equations have no solution.
-    pub fn integrate(&mut self, gait: &dyn Gait, leg: usize, mesh: &Mesh, parameters: &[f64]) -> Result<(), Undefined> {
+    pub fn integrate(&mut self, gait: &dyn Gait, mode: Mode, mesh: &Mesh, parameters: &[f64]) -> Result<(), Undefined> {
         let t = parameters[self.layout.duration()];
         self.prescribed.evaluate(&self.layout, mesh, parameters);
         for (k, early) in self.early.chunks_mut(self.early_length).enumerate() {
             let [q, qd, _] = self.prescribed.at(k);
-            gait.early(leg, q, qd, early);
+            gait.early(mode, q, qd, early);
         }
         self.beta[0] = parameters[self.layout.beta()];
         self.sigma[0] = parameters[self.layout.sigma()];
-        self.rates(gait, leg, 0)?;
+        self.rates(gait, mode, 0)?;
         for e in 0..mesh.elements {
-            self.element(gait, leg, mesh, e, t / mesh.elements as f64)?;
+            self.element(gait, mode, mesh, e, t / mesh.elements as f64)?;
         }
         Ok(())
     }
 
     /// β̇, σ̇ at node `k` from β, σ.
-    fn rates(&mut self, gait: &dyn Gait, leg: usize, k: usize) -> Result<(), Undefined> {
+    fn rates(&mut self, gait: &dyn Gait, mode: Mode, k: usize) -> Result<(), Undefined> {
         let early = &self.early[k * self.early_length..][..self.early_length];
-        gait.late(leg, early, self.beta[k], &mut self.late[k]);
+        gait.late(mode, early, self.beta[k], &mut self.late[k]);
         [self.betad[k], self.sigmad[k]] = self.rates_of(&self.late[k], self.beta[k], self.sigma[k])?;
         Ok(())
     }
@@ -171,7 +179,7 @@ impl Stance {
     }
 
     /// Solves the collocation equations of element `e` of length `h` (in time) by Newton's method.
-    fn element(&mut self, gait: &dyn Gait, leg: usize, mesh: &Mesh, e: usize, h: f64) -> Result<(), Undefined> {
+    fn element(&mut self, gait: &dyn Gait, mode: Mode, mesh: &Mesh, e: usize, h: f64) -> Result<(), Undefined> {
         const M: usize = NODES - 1;
         let a = &mesh.lobatto.integral;
         let first = e * M;
@@ -185,7 +193,7 @@ impl Stance {
         let mut converged = false;
         for _ in 0..NEWTON_STEPS {
             for i in 1..NODES {
-                self.rates(gait, leg, first + i)?;
+                self.rates(gait, mode, first + i)?;
             }
             let mut residual = [[0.0; 2]; M];
             let mut largest = 0.0f64;
@@ -218,13 +226,13 @@ impl Stance {
             return Err(Undefined::Diverged);
         }
         for i in 1..NODES {
-            self.rates(gait, leg, first + i)?;
+            self.rates(gait, mode, first + i)?;
         }
         Ok(())
     }
 
     /// Sensitivities of the solution in all local parameters, at the collocation nodes.
-    pub fn differentiate(&mut self, gait: &dyn Gait, leg: usize, mesh: &Mesh, parameters: &[f64]) {
+    pub fn differentiate(&mut self, gait: &dyn Gait, mode: Mode, mesh: &Mesh, parameters: &[f64]) {
         let layout = self.layout;
         let np = layout.len();
         let t = parameters[layout.duration()];
@@ -233,7 +241,7 @@ impl Stance {
         self.beta_p[layout.beta()] = 1.0;
         self.sigma_p[layout.sigma()] = 1.0;
         for k in 0..mesh.nodes.len() {
-            self.explicit(gait, leg, mesh, k, t);
+            self.explicit(gait, mode, mesh, k, t);
         }
         self.complete(0, t);
         for e in 0..mesh.elements {
@@ -242,12 +250,12 @@ impl Stance {
     }
 
     /// Fills the rows of node `k` with ∂(T β̇), ∂(T σ̇) at fixed (β, σ).
-    fn explicit(&mut self, gait: &dyn Gait, leg: usize, mesh: &Mesh, k: usize, t: f64) {
+    fn explicit(&mut self, gait: &dyn Gait, mode: Mode, mesh: &Mesh, k: usize, t: f64) {
         let layout = self.layout;
         let LateGradient { f1_q, f2_q, f2_qd, moment_q, .. } = self.shape;
         let jet = &mesh.nodes[k].1;
         let early = &self.early[k * self.early_length..][..self.early_length];
-        gait.late_gradient(leg, early, self.beta[k], &mut self.gradient);
+        gait.late_gradient(mode, early, self.beta[k], &mut self.gradient);
         let f1 = self.late[k][0];
         let row = k * layout.len();
         let (rate, moment) = (&mut self.rate_p[row..row + layout.len()], &mut self.moment_p[row..row + layout.len()]);
@@ -313,14 +321,14 @@ impl Stance {
         }
     }
 
-    /// The state at any `s` of an integrated half step, by the collocation polynomial.
+    /// The state at any `s` of an integrated phase, by the collocation polynomial.
     ///
     /// # Errors
-    /// As for [`Stance::integrate`].
+    /// As for [`Flow::integrate`].
     pub fn at(
         &self,
         gait: &dyn Gait,
-        leg: usize,
+        mode: Mode,
         mesh: &Mesh,
         parameters: &[f64],
         s: f64,
@@ -342,8 +350,8 @@ impl Stance {
             sigma += share * w * self.sigmad[first + j];
         }
         let mut late = [0.0; 6];
-        gait.early(leg, &state.prescribed[0], &state.prescribed[1], &mut state.early);
-        gait.late(leg, &state.early, beta, &mut late);
+        gait.early(mode, &state.prescribed[0], &state.prescribed[1], &mut state.early);
+        gait.late(mode, &state.early, beta, &mut late);
         let [betad, _] = self.rates_of(&late, beta, sigma)?;
         (state.q[d.unactuated], state.qd[d.unactuated], state.sigma) = (beta, betad, sigma);
         Ok(())
@@ -362,14 +370,14 @@ pub struct State {
 }
 
 impl State {
-    pub fn new(d: &Description, leg: usize) -> State {
+    pub fn new(d: &Description, mode: Mode) -> State {
         let (q, own) = (vec![0.0; d.orientations()], vec![0.0; d.prescribed()]);
         State {
             qd: q.clone(),
             q,
             prescribed: [own.clone(), own.clone(), own],
             sigma: 0.0,
-            early: vec![0.0; d.early[leg]],
+            early: d.shape(mode).early.zeros(),
         }
     }
 }
