@@ -69,7 +69,10 @@ fn a_robot_that_nobody_built_walks_and_its_result_is_good_anywhere() {
     let told = succeeds(folder.path(), &walks, "");
     assert!(told.contains("stalk of stork, least energy at 0.5 m/s: local optimum, receipt holds"), "{told}");
     // The result says what it is of: nothing else is needed.
-    assert!(succeeds(folder.path(), "verify stalk.json", "").contains("stalk-energy-0.5, confirmed"));
+    let of_others = "of the robot whose files it carries";
+    let told = succeeds(folder.path(), "verify stalk.json", "");
+    assert!(told.contains("stalk-energy-0.5, confirmed") && told.contains(of_others), "{told}");
+    assert!(!succeeds(folder.path(), &format!("verify stalk.json --robot {STORK}"), "").contains(of_others));
     assert!(succeeds(folder.path(), "export stalk.json --format csv --rate 100", "").lines().count() > 10);
     assert!(succeeds(folder.path(), "export stalk.json --format mjcf", "").contains("left_metatarsus"));
     // On the ground it would fall over to the side, which a model in the plane does not know.

@@ -141,6 +141,14 @@ impl Choice {
         Choice { key, origin, derived: OnceLock::new() }
     }
 
+    /// What the gait is derived from.
+    fn specification(&self) -> Option<Specification> {
+        match &self.origin {
+            Origin::Built(gait) => gait.specification().cloned(),
+            Origin::Files(robot) => robot.as_ref().as_ref().ok()?.specification(self.key),
+        }
+    }
+
     fn gait(&self) -> anyhow::Result<Loaded> {
         let robot = match &self.origin {
             Origin::Built(gait) => return Ok(*gait),
@@ -210,26 +218,32 @@ struct Carried {
 /// Many results carry the same one.
 static CARRIED: Mutex<Vec<Carried>> = Mutex::new(Vec::new());
 
+/// Whether a result carries files that are those of no gait here.
+pub fn is_of_others(result: &GaitResult) -> bool {
+    result.specification.is_some() && of_same_files(result).is_none()
+}
+
+fn of_same_files(result: &GaitResult) -> Option<&'static Choice> {
+    let here = choices().iter().find(|choice| choice.key == result.gait);
+    here.filter(|choice| result.specification.is_some() && choice.specification() == result.specification)
+}
+
 /// The gait that a result is of: one that is here, or the one that the result carries with it. Not to be asked for from several threads
 /// at once, which share the derivation.
 ///
 /// # Errors
 /// Why there is none.
 pub fn of(result: &GaitResult) -> Result<Loaded, String> {
-    let here = choices().iter().find(|choice| choice.key == result.gait).map(Choice::gait);
+    let told = |choice: &Choice| choice.gait().map_err(|why| format!("{why:#}"));
     let Some(carried) = &result.specification else {
         let known = || choices().iter().map(|choice| choice.key).collect::<Vec<_>>().join(", ");
         let unknown = || Foreign::UnknownGait { gait: result.gait.clone(), known: known() }.to_string();
-        return here.ok_or_else(unknown)?.map_err(|why| format!("{why:#}"));
+        return told(choices().iter().find(|choice| choice.key == result.gait).ok_or_else(unknown)?);
     };
-    match here {
-        // What it carries must be what the gait here was derived from: else it would go unread.
-        Some(Ok(gait)) if is_of(result, gait.description()) && gait.specification() == Some(carried) => Ok(gait),
-        _ => of_carried(carried, &result.gait).and_then(|gait| {
-            let what = "the files that the result carries are those of another robot or gait (its fingerprint differs)";
-            is_of(result, gait.description()).then_some(gait).ok_or_else(|| what.to_string())
-        }),
-    }
+    // What a result carries is read, also where its fingerprint is that of a gait here.
+    let gait = of_same_files(result).map_or_else(|| of_carried(carried, &result.gait), told)?;
+    let what = "the files that the result carries are those of another robot or gait (its fingerprint differs)";
+    is_of(result, gait.description()).then_some(gait).ok_or_else(|| what.into())
 }
 
 fn of_carried(specification: &Specification, key: &str) -> Result<Loaded, String> {

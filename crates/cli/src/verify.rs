@@ -17,6 +17,9 @@ struct Entry {
     /// Its file, and which of the file's results it is if there are several.
     file: String,
     confirmed: bool,
+    /// Whether that is said of the robot whose files it carries, which is none of those here.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    of_others: bool,
     #[serde(flatten)]
     audit: Audit,
 }
@@ -29,11 +32,11 @@ pub fn run(files: &[PathBuf], json: Option<&str>) -> anyhow::Result<bool> {
     for file in files.iter().flat_map(|file| in_folder(file)) {
         for audit in file.map_or_else(|error| vec![Err(error)], |file| audits(&file)) {
             match audit {
-                Ok((file, audit)) => {
+                Ok(entry) => {
                     if json != Some("-") {
-                        output::quiet_when_closed(print(&file, &audit))?;
+                        output::quiet_when_closed(print(&entry))?;
                     }
-                    entries.push(Entry { file, confirmed: audit.is_confirmed(), audit });
+                    entries.push(entry);
                 }
                 Err(error) => {
                     output::error(&error);
@@ -63,7 +66,7 @@ fn in_folder(path: &Path) -> Vec<anyhow::Result<PathBuf>> {
 }
 
 /// The audits of all that is in a file, each with its name.
-fn audits(file: &Path) -> Vec<anyhow::Result<(String, Audit)>> {
+fn audits(file: &Path) -> Vec<anyhow::Result<Entry>> {
     match document::read(file) {
         Ok(Document::Results(results)) => {
             let audit = |stated: document::Stated| {
@@ -74,19 +77,25 @@ fn audits(file: &Path) -> Vec<anyhow::Result<(String, Audit)>> {
                         Audit::against(&stated.value, &stated.result, Err(&refusal))
                     }
                 };
-                (audit, stated.name)
+                Entry::new(stated.name, robots::is_of_others(&stated.result), audit)
             };
-            results.into_iter().map(|r| r.map(audit).map(|(audit, name)| (name, audit))).collect()
+            results.into_iter().map(|r| r.map(audit)).collect()
         }
         Ok(Document::Sweep(sweep)) => {
             let results: Vec<_> = sweep.results.iter().map(|stated| stated.result.clone()).collect();
-            vec![Ok((sweep.name, sweep.overview.audit(&sweep.value, &results)))]
+            vec![Ok(Entry::new(sweep.name, false, sweep.overview.audit(&sweep.value, &results)))]
         }
         Err(error) => vec![Err(error)],
     }
 }
 
-fn print(file: &str, audit: &Audit) -> std::io::Result<()> {
+impl Entry {
+    fn new(file: String, of_others: bool, audit: Audit) -> Entry {
+        Entry { file, confirmed: audit.is_confirmed(), of_others, audit }
+    }
+}
+
+fn print(Entry { file, of_others, audit, .. }: &Entry) -> std::io::Result<()> {
     let mut out = output::person();
     let verdict = match audit.is_confirmed() {
         true if audit.is_of_no_motion() => "states no motion",
@@ -94,6 +103,9 @@ fn print(file: &str, audit: &Audit) -> std::io::Result<()> {
         false => "not confirmed",
     };
     writeln!(out, "{file}: {}, {verdict}", audit.name)?;
+    if *of_others {
+        writeln!(out, "  of the robot whose files it carries, which is not the one here")?;
+    }
     // What has one reason is said once.
     for alike in audit.statements.chunk_by(|a, b| a.reason.is_some() && a.reason == b.reason) {
         let names: Vec<&str> = alike.iter().map(|s| s.entry.as_str()).collect();

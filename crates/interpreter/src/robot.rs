@@ -2,6 +2,7 @@
 
 use super::gait::Interpreted;
 use super::tape::Unrunnable;
+use piaffe_codegen::spec::Gait;
 use piaffe_codegen::{RobotFiles, SpecFile, Specified, specified};
 use piaffe_model::Specification;
 use std::path::Path;
@@ -77,6 +78,17 @@ impl Robot {
         self.specified.gaits.iter().map(|gait| self.key(&gait.name)).collect()
     }
 
+    /// What a gait is derived from, if there is one of this name.
+    pub fn specification(&self, name: &str) -> Option<Specification> {
+        let (_, file) = self.find(name)?;
+        let text = |file: &SpecFile| file.text.clone().into();
+        Some(Specification { robot: text(&self.files.robot), gait: text(file) })
+    }
+
+    fn find(&self, name: &str) -> Option<(&Gait, &SpecFile)> {
+        self.specified.gaits.iter().zip(&self.files.gaits).find(|(gait, _)| self.key(&gait.name) == name)
+    }
+
     fn key(&self, gait: &str) -> String {
         let module = &self.files.module;
         if module.is_empty() { gait.into() } else { format!("{module}/{gait}") }
@@ -87,11 +99,9 @@ impl Robot {
     /// # Errors
     /// If there is none of this name, or the robot's numbers make some that are none.
     pub fn gait(&self, name: &str) -> Result<Interpreted, Unloadable> {
-        let found = self.specified.gaits.iter().zip(&self.files.gaits).find(|(gait, _)| self.key(&gait.name) == name);
-        let (gait, file) =
-            found.ok_or_else(|| Unloadable::NoGait { gait: name.into(), known: self.gaits().join(", ") })?;
-        let text = |file: &SpecFile| file.text.clone().into();
-        let specification = Specification { robot: text(&self.files.robot), gait: text(file) };
+        let unknown = || Unloadable::NoGait { gait: name.into(), known: self.gaits().join(", ") };
+        let (gait, _) = self.find(name).ok_or_else(unknown)?;
+        let specification = self.specification(name).ok_or_else(unknown)?;
         Interpreted::new(&self.specified.robot, gait, specification, name)
             .map_err(|why| Unloadable::Gait { gait: name.into(), why })
     }

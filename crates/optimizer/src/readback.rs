@@ -1,4 +1,4 @@
-//! A result that comes back from a file: it is of this build's robot, and all that it states was derived anew.
+//! A result that comes back from a file: it is of a gait at hand, and all that it states was derived anew.
 
 use crate::audit::Audit;
 use crate::origin::{Foreign, gait_of};
