@@ -146,7 +146,7 @@ fn no_other_shares_leave_more_room() {
             let pushed = columns.rows(0, 6) * &shares.squeezes;
             assert!(pushed.amax() < 1e-9, "the feet push against nothing but each other");
             let motors = legs.motors(&i.posture, &shares, &demand, &columns);
-            let rooms = Limits { legs: &legs }.support(&i.stance, &i.posture, &shares, &motors);
+            let rooms = Limits { legs: &legs }.instant(&i.stance, &i.posture, &shares, &motors);
             let found = best(&rooms, 1).unwrap();
             assert!((found.margin - i.margin).abs() < 1e-12);
             let margin = |s: f64| {

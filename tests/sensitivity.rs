@@ -51,7 +51,7 @@ fn elasticities_add_up_to_the_dimension_of_the_criterion() {
     // matters is forgotten, and none counts twice.
     for (gait, criterion) in GAITS.iter().flat_map(|g| Criterion::ALL.map(|c| (*g, c))) {
         let local = optimum(gait, criterion);
-        let Some(found) = sensitivities(gait, criterion, SPEED, &local.motion) else {
+        let Ok(found) = sensitivities(gait, criterion, SPEED, &local.motion) else {
             // Prices are told only where the residual holds; on the A1 it need not (docs/robots.md).
             assert!(gait.description().key.starts_with("a1/"));
             continue;
@@ -77,7 +77,7 @@ fn slopes_in_limits_and_speed_are_those_of_optima_of_changed_problems() {
     let mut compared = 0;
     for (gait, criterion) in GAITS.iter().flat_map(|g| Criterion::ALL.map(|c| (*g, c))) {
         let local = optimum(gait, criterion);
-        let Some(found) = sensitivities(gait, criterion, SPEED, &local.motion) else {
+        let Ok(found) = sensitivities(gait, criterion, SPEED, &local.motion) else {
             // Prices are told only where the residual holds; on the A1 it need not (docs/robots.md).
             assert!(gait.description().key.starts_with("a1/"));
             continue;

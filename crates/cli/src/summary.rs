@@ -3,7 +3,7 @@
 use super::digits::decimal;
 use piaffe_model::Description;
 use piaffe_model::motion::Criterion;
-use piaffe_optimizer::result::{GaitResult, Status};
+use piaffe_optimizer::result::{GaitResult, NotExamined, Status};
 use piaffe_optimizer::search::evidence::Effort;
 use piaffe_optimizer::sensitivity::Sensitivity;
 use piaffe_verify::certificate::Certificate;
@@ -157,6 +157,9 @@ pub fn print(description: &Description, r: &GaitResult) -> std::io::Result<()> {
         writeln!(out, "                  least margin {}", legs.support.words())?;
         writeln!(out, "                  at the impact {}", legs.impact.words())?;
         writeln!(out, "                  {}", legs.cost(r.criterion))?;
+    }
+    for NotExamined { entry, reason } in &r.not_examined {
+        writeln!(out, "  not examined    {} ({reason})", entry.replace('_', " "))?;
     }
     writeln!(out, "  search          {}", confidence(r))?;
     if r.local_optima.len() > 1 {

@@ -1,11 +1,13 @@
 //! What is told about an optimum beyond its verdict: what takes longer than finding it.
 
-use crate::finite::is_finite;
+use crate::finite::not_finite;
 use crate::four_legs::RealLegs;
 use crate::result::{GaitResult, NotExamined};
 use crate::sensitivity::sensitivities;
 use crate::stability::stability;
 use piaffe_model::Gait;
+use serde::Serialize;
+use std::fmt::Display;
 
 impl GaitResult {
     /// Adds what the gait was derived from, and what is found about the motion if it is an optimum.
@@ -15,10 +17,15 @@ impl GaitResult {
     pub fn examine(&mut self, gait: &dyn Gait) {
         self.specification = gait.specification().cloned();
         let Some(motion) = self.motion() else { return };
-        self.stability = stability(gait, &motion).ok().filter(is_finite);
-        self.real_legs = RealLegs::new(gait, &motion).ok().filter(is_finite);
-        self.sensitivities = sensitivities(gait, self.criterion, self.speed, &motion).filter(is_finite);
-        self.not_examined = self.absent("cannot be derived for this motion with these limits");
+        let mut open = Vec::new();
+        if self.certificate.is_none() {
+            open.push(NotExamined { entry: "certificate".into(), reason: "nothing could be enclosed".into() });
+        }
+        self.stability = told(stability(gait, &motion), "stability", &mut open);
+        self.real_legs = told(RealLegs::new(gait, &motion), "real_legs", &mut open);
+        let slopes = sensitivities(gait, self.criterion, self.speed, &motion);
+        self.sensitivities = told(slopes, "sensitivities", &mut open);
+        self.not_examined = open;
     }
 
     /// The entries of an optimum that it has not, for this reason.
@@ -32,4 +39,14 @@ impl GaitResult {
         let open = entries.into_iter().filter(|(_, absent)| *absent);
         open.map(|(entry, _)| NotExamined { entry: entry.into(), reason: reason.into() }).collect()
     }
+}
+
+/// What was found, if all of its numbers are numbers; else it is open why it is absent.
+fn told<T: Serialize, E: Display>(found: Result<T, E>, entry: &str, open: &mut Vec<NotExamined>) -> Option<T> {
+    let found = found.map_err(|reason| reason.to_string()).and_then(|found| match not_finite(&found) {
+        None => Ok(found),
+        Some(place) => Err(format!("{place} is not a finite number")),
+    });
+    let note = |reason| open.push(NotExamined { entry: entry.into(), reason });
+    found.map_err(note).ok()
 }

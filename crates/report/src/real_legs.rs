@@ -8,6 +8,7 @@ use super::scale::domain;
 use super::scene::{Dash, Xy};
 use super::subject::{Subject, spaced};
 use maud::{Markup, html};
+use piaffe_model::Mode;
 use piaffe_model::motion::Criterion;
 use piaffe_optimizer::four_legs::{Instant, Lift, RealLegs, Verdict, Worst};
 
@@ -20,18 +21,18 @@ pub fn figures(s: &Subject) -> Vec<Figure> {
     lift.map_or(Vec::new(), |lift| vec![loads(s, &lift), friction(s, &lift), margin(s, &lift)])
 }
 
-fn over_time(lift: &Lift, half: usize, value: impl Fn(&Instant) -> f64) -> Vec<Xy> {
-    lift.instants.iter().filter(|i| i.half_step == half).map(|i| [i.time, value(i)]).collect()
+fn over_time(lift: &Lift, phase: usize, value: impl Fn(&Instant) -> f64) -> Vec<Xy> {
+    lift.instants.iter().filter(|i| i.phase == phase).map(|i| [i.time, value(i)]).collect()
 }
 
-/// A curve for every foot in the half step in which it stands.
+/// A curve for every foot in each phase in which it stands.
 fn of_feet(lift: &Lift, value: impl Fn(&Instant, usize) -> f64) -> Vec<Curve> {
     let names = lift.legs.whole.description().legs;
     let mut curves = Vec::new();
-    for half in 0..2 {
-        let Some(first) = lift.instants.iter().find(|i| i.half_step == half) else { continue };
+    for phase in 0..lift.durations.len() {
+        let Some(first) = lift.instants.iter().find(|i| i.phase == phase) else { continue };
         for (k, leg) in first.stance.iter().enumerate() {
-            let segment = over_time(lift, half, |i| value(i, *leg));
+            let segment = over_time(lift, phase, |i| value(i, *leg));
             let curve = Curve::new(spaced(names[*leg].name), Ink::Leg(lift.legs.legs[*leg]), vec![segment]);
             curves.push(curve.dash(Dash::of(k)));
         }
@@ -60,8 +61,10 @@ fn friction(s: &Subject, lift: &Lift) -> Figure {
 
 fn margin(s: &Subject, lift: &Lift) -> Figure {
     let mut plot = s.time_plot("Room that the best shares leave", "least margin");
-    let segments = (0..2).map(|half| over_time(lift, half, |i| i.margin)).collect();
-    plot.curves.push(Curve::new("least margin of all limits of the standing legs", Ink::Text, segments));
+    let segments = (0..lift.durations.len()).map(|phase| over_time(lift, phase, |i| i.margin)).collect();
+    let whose =
+        if s.description().has(Mode::Flight) { "the standing legs, in flight of all" } else { "the standing legs" };
+    plot.curves.push(Curve::new(format!("least margin of all limits of {whose}"), Ink::Text, segments));
     limit(&mut plot, 0.0, "limit".into());
     Figure::plot(
         "real-margin",
@@ -81,13 +84,13 @@ pub fn section(legs: &RealLegs, criterion: Criterion) -> Markup {
     html! {
         h3 { "Real legs" }
         p { b { (verdict(legs)) } " In the equations of motion of the whole robot, equal shares leave lacking at most "
-            (legs.equal_shares.support.words()) " in support and " (legs.equal_shares.impact.words_of_impact())
+            (legs.equal_shares.support.words()) " between impacts and " (legs.equal_shares.impact.words_of_impact())
             " at an impact, the best shares " (legs.best_shares.support.words()) " and "
             (legs.best_shares.impact.words_of_impact()) "." }
         p { "With the cheapest shares: " (legs.cost(criterion)) "; " (digits(legs.costs.proportional.of(criterion), 6))
             " if each foot pushes in proportion to its load." }
         @if legs.verdict() != Verdict::NoEquilibrium {
-            ul { (worst("Least room in support", &legs.support)) (worst("Least room at an impact", &legs.impact)) }
+            ul { (worst("Least room between impacts", &legs.support)) (worst("Least room at an impact", &legs.impact)) }
         }
     }
 }

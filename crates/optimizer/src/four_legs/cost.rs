@@ -87,9 +87,8 @@ impl RealCosts {
     pub fn of(lift: &Lift) -> RealCosts {
         let costs = |way: fn(&Ways<Effort>) -> &Effort| {
             let mut work = Costs { energy: 0.0, torque: 0.0 };
-            for half in 0..2 {
-                let efforts =
-                    || lift.instants.iter().filter(|i| i.half_step == half).map(|i| (i.time, way(&i.efforts)));
+            for phase in 0..lift.durations.len() {
+                let efforts = || lift.instants.iter().filter(|i| i.phase == phase).map(|i| (i.time, way(&i.efforts)));
                 let joints = efforts().next().map_or(0, |(_, effort)| effort.powers.len());
                 let over_time = |of: &dyn Fn(&Effort) -> f64| {
                     efforts().map(|(time, effort)| (time, of(effort))).collect::<Vec<_>>()

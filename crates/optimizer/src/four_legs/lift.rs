@@ -26,21 +26,21 @@ pub enum NotLifted {
     Unsolved { time: f64 },
 }
 
-/// The whole robot at one instant of support.
+/// The whole robot at one instant, in support or in flight.
 #[derive(Clone, Debug)]
 pub struct Instant {
     /// From the beginning of the step, s.
     pub time: f64,
-    /// 0 or 1.
-    pub half_step: usize,
+    /// Which phase of the step.
+    pub phase: usize,
     pub posture: Posture,
-    /// Real legs on the ground.
+    /// Real legs on the ground; none in flight.
     pub stance: Vec<usize>,
     /// Of every joint of the whole robot, N·m.
     pub torque: Vec<f64>,
     /// On every foot, world axes, N.
     pub reactions: Vec<Point>,
-    /// Least margin of the limits on the legs in support, and which are in the way of more.
+    /// Least margin of the limits on the legs in support, in flight of all legs, and which are in the way of more.
     pub margin: f64,
     pub binding: Vec<(Limit, f64)>,
     /// What the equations of motion lack with these shares, and with equal ones.
@@ -54,8 +54,8 @@ pub struct Instant {
 #[derive(Clone, Debug)]
 pub struct Impact {
     pub time: f64,
-    /// The half step that it ends, 0 or 1.
-    pub half_step: usize,
+    /// The phase of the step that it ends.
+    pub phase: usize,
     /// Before.
     pub posture: Posture,
     /// u after less u before.
@@ -109,8 +109,7 @@ impl<'a> Lift<'a> {
     fn new(gait: &'a dyn Gait, moments: &[Moment], walk: &Walk) -> Result<Lift<'a>, NotLifted> {
         let no_whole = || NotLifted::NoWhole { gait: gait.description().key.into() };
         let legs = Legs::new(gait).ok_or_else(no_whole)?;
-        let supports = moments.iter().filter_map(|m| Some((m, m.mode.stance()?)));
-        let instants = supports.map(|(m, leg)| legs.support(m, leg)).collect::<Result<_, _>>()?;
+        let instants = moments.iter().map(|m| legs.instant(m)).collect::<Result<_, _>>()?;
         // The last moment of each phase.
         let ends = |k: usize| moments.get(k + 1).is_none_or(|next| next.phase != moments[k].phase);
         let landings =
@@ -127,20 +126,21 @@ impl<'a> Lift<'a> {
 }
 
 impl Legs<'_> {
-    /// What the real legs do at a moment of the gait at which the virtual leg `leg` stands.
+    /// What the real legs do at a moment of the gait.
     ///
     /// # Errors
     /// If the cone program is not solved.
-    pub fn support(&self, m: &Moment, leg: usize) -> Result<Instant, NotLifted> {
+    pub fn instant(&self, m: &Moment) -> Result<Instant, NotLifted> {
         let posture = self.posture(m);
         let equations = Equations::new(self.whole, &posture, self.description.leg_length());
-        let stance: Vec<usize> = self.members(leg).collect();
+        let stance: Vec<usize> = m.mode.stance().into_iter().flat_map(|leg| self.members(leg)).collect();
         let (demand, columns) = (equations.demand(&posture.ud), equations.columns(&stance));
         let equal = self.equal(&posture, &stance, m.force);
-        // The platform has no motors: its six equations are the reactions' alone.
+        // The platform has no motors: its six equations are the reactions' alone. In flight nothing is left to meet them: they hold,
+        // or are lacking.
         let shares = Shares::new(&equations.ranks(&columns, &demand, PLATFORM, self.axis()), &equal);
         let motors = self.motors(&posture, &shares, &demand, &columns);
-        let rooms = Limits { legs: self }.support(&stance, &posture, &shares, &motors);
+        let rooms = Limits { legs: self }.instant(&stance, &posture, &shares, &motors);
         let choice = Choice::new(&rooms, shares.squeezes.ncols()).ok_or(NotLifted::Unsolved { time: m.time })?;
         let proportional = shares.nearest_to(&self.proportional(&posture, &shares.nearest));
         // Of two feet the cheapest shares are known, of more feet not.
@@ -172,7 +172,7 @@ impl Legs<'_> {
         let (lack, equal_lack) = (lack(&left.rows(0, PLATFORM).into_owned()), lack(&equal_lack));
         Ok(Instant {
             time: m.time,
-            half_step: m.phase,
+            phase: m.phase,
             reactions: self.spread(&posture, &stance, &reactions),
             posture,
             stance,
@@ -218,7 +218,7 @@ impl Legs<'_> {
         let (lack, equal_lack) = (lack(&impulses), lack(&equal));
         Ok(Impact {
             time: m.time,
-            half_step: m.phase,
+            phase: m.phase,
             impulses: self.spread(&posture, &landing, &impulses),
             posture,
             change,

@@ -65,14 +65,18 @@ impl Room {
 }
 
 impl Limits<'_> {
-    /// In support: of the feet `stance` and of their legs' joints.
-    pub fn support(&self, stance: &[usize], posture: &Posture, shares: &Shares, motors: &[Motor]) -> Vec<Room> {
+    /// Of the feet `stance` and of their legs' joints; in flight, where none stands, of all joints.
+    pub fn instant(&self, stance: &[usize], posture: &Posture, shares: &Shares, motors: &[Motor]) -> Vec<Room> {
         let d = self.legs.description;
         let w = self.legs.whole.description();
         let weight = self.legs.weight() / stance.len() as f64;
-        let least = d.limits.min_vertical_force / stance.len() as f64;
-        let mut rooms = self.feet(stance, posture, shares, weight, least / weight);
-        for joint in stance.iter().flat_map(|leg| w.legs[*leg].joints.clone()) {
+        let least = d.limits.min_vertical_force / self.legs.weight();
+        let mut rooms = self.feet(stance, posture, shares, weight, least);
+        let joints: Vec<usize> = match stance {
+            [] => (0..w.joints.len()).collect(),
+            _ => stance.iter().flat_map(|leg| w.legs[*leg].joints.clone()).collect(),
+        };
+        for joint in joints {
             let (limits, Motor { torque, rate, sharing }) = (&d.joints[self.legs.joints[joint]], &motors[joint]);
             let most = limits.max_torque / sharing;
             let slowed = (limits.unloaded_speed - limits.loaded_speed) / limits.unloaded_speed;

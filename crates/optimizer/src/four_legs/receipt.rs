@@ -23,7 +23,7 @@ pub struct RealLegs {
     pub equal_shares: Lacks,
     /// What they lack with the best shares: more than rounding if no shares meet them.
     pub best_shares: Lacks,
-    /// The instant of support with the least room, each with its best shares.
+    /// The instant of support or flight with the least room, each with its best shares.
     pub support: Worst,
     /// The impact with the least room.
     pub impact: Worst,
@@ -106,8 +106,8 @@ impl RealLegs {
         let (instants, impacts) = (&lift.instants, &lift.impacts);
         let most =
             |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a });
-        let supports = &mut instants.iter().map(|i| (i.margin, i.half_step, i.time, &i.binding[..]));
-        let landings = &mut impacts.iter().map(|i| (i.margin, i.half_step, i.time, &i.binding[..]));
+        let supports = &mut instants.iter().map(|i| (i.margin, i.phase, i.time, &i.binding[..]));
+        let landings = &mut impacts.iter().map(|i| (i.margin, i.phase, i.time, &i.binding[..]));
         let loads = &mut instants.iter().filter(|i| i.stance.len() > 1).map(|i| {
             let vertical = |leg: &usize| i.reactions[*leg][1];
             most(&mut i.stance.iter().map(vertical)) / i.stance.iter().map(vertical).sum::<f64>()

@@ -12,7 +12,7 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 #[derive(Serialize)]
 struct Row {
     t: f64,
-    /// 1 or 2.
+    /// Of all phases of the step, 1-based.
     half_step: usize,
     /// Platform's mass centre, its velocity and acceleration; world axes.
     position: Point,
@@ -29,7 +29,7 @@ struct Row {
     torque: Vec<f64>,
     /// On every foot, world axes.
     force: Vec<Point>,
-    /// Least margin of the limits on the legs in support.
+    /// Least margin of the limits on the legs in support, in flight of all legs.
     margin: f64,
     /// The largest part that the equations of motion lack, of weight or weight × leg length: nothing but rounding, if reactions
     /// meet them at all.
@@ -42,7 +42,7 @@ fn rows<'l>(lift: &'l Lift<'_>) -> impl Iterator<Item = Row> + 'l {
         let three = |v: &[f64], at: usize| [v[at], v[at + 1], v[at + 2]];
         Row {
             t: i.time,
-            half_step: i.half_step + 1,
+            half_step: i.phase + 1,
             position: p.position,
             velocity: p.outside(three(&p.u, 0)),
             acceleration: p.outside(three(&p.ud, 0)),
@@ -65,7 +65,7 @@ fn names(lift: &Lift) -> (Vec<&'static str>, Vec<&'static str>) {
     (w.joints.iter().map(|j| j.name).collect(), w.legs.iter().map(|l| l.name).collect())
 }
 
-/// A row per moment and one per impact (the last of each half step, where the impulses are not zero); SI units.
+/// A row per moment and one per impact (the last of a phase, where the impulses are not zero); SI units.
 pub fn csv(lift: &Lift) -> String {
     let (joints, legs) = names(lift);
     let mut header: Vec<String> = vec!["t".into(), "half_step".into()];
@@ -86,7 +86,7 @@ pub fn csv(lift: &Lift) -> String {
     let mut text = header.join(",");
     text.push('\n');
     for (row, instant) in rows(lift).zip(&lift.instants) {
-        let impact = lift.impacts.iter().find(|i| (i.half_step, i.time) == (instant.half_step, instant.time));
+        let impact = lift.impacts.iter().find(|i| (i.phase, i.time) == (instant.phase, instant.time));
         let impulse = impact.map_or(vec![0.0; 3 * legs.len()], |i| i.impulses.concat());
         let platform = [&[row.t, row.half_step as f64][..], &row.position, &row.velocity, &row.acceleration].concat();
         let turn = [&row.quaternion[..], &row.omega, &row.omegad].concat();
@@ -113,7 +113,7 @@ pub fn json(lift: &Lift) -> Value {
         };
         json!({
             "t": i.time,
-            "half_step": i.half_step + 1,
+            "half_step": i.phase + 1,
             "before": speeds(&i.posture.u),
             "after": speeds(&after),
             "impulse": i.impulses,

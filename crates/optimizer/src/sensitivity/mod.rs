@@ -9,8 +9,8 @@ mod lagrangian;
 use crate::constraints::sharing::applies;
 use crate::optimality::{KKT_RESIDUAL, Linearized};
 use lagrangian::{LANES, Slopes};
-use piaffe_model::Gait;
 use piaffe_model::motion::{Criterion, Motion};
+use piaffe_model::{Gait, Mode};
 use serde::{Deserialize, Serialize};
 
 /// Slopes of the least criterion.
@@ -48,19 +48,51 @@ pub struct Sensitivity {
     pub elasticity: f64,
 }
 
-/// The sensitivities of a motion that minimizes `criterion` at `speed` (m/s). `None` without levers
-/// ([`Gait::levers`]), with limits at each real leg, if the motion cannot be followed, or if by its residual it is no optimum.
+/// Why there are no sensitivities.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Unknown {
+    /// See [`Gait::levers`].
+    #[error("it is not known which numbers of a specification the robot is made of")]
+    NoLevers,
+    #[error("slopes with limits at each real leg are not derived")]
+    RealLegs,
+    #[error("slopes through flight are not derived")]
+    Flight,
+    #[error("the motion cannot be followed")]
+    Undefined,
+    #[error(
+        "prices are told only where the first-order conditions hold to {KKT_RESIDUAL:.0e}, and the residual is {residual:.1e}"
+    )]
+    NoOptimum { residual: f64 },
+}
+
+/// The sensitivities of a motion that minimizes `criterion` at `speed` (m/s).
+///
+/// # Errors
+/// Why there are none.
 ///
 /// # Panics
 /// If the motion has not the numbers that the gait needs; `verify` tells.
-pub fn sensitivities(gait: &dyn Gait, criterion: Criterion, speed: f64, motion: &Motion) -> Option<Sensitivities> {
-    let levers = gait.levers();
-    if levers.is_empty() || applies(gait.description()) {
-        return None;
+pub fn sensitivities(
+    gait: &dyn Gait,
+    criterion: Criterion,
+    speed: f64,
+    motion: &Motion,
+) -> Result<Sensitivities, Unknown> {
+    let (d, levers) = (gait.description(), gait.levers());
+    if d.has(Mode::Flight) {
+        return Err(Unknown::Flight);
     }
-    let linearized = Linearized::new(gait, criterion, speed, motion).ok()?;
-    if linearized.multipliers.kkt.optimality() > KKT_RESIDUAL {
-        return None;
+    if levers.is_empty() {
+        return Err(Unknown::NoLevers);
+    }
+    if applies(d) {
+        return Err(Unknown::RealLegs);
+    }
+    let linearized = Linearized::new(gait, criterion, speed, motion).map_err(|_| Unknown::Undefined)?;
+    let residual = linearized.multipliers.kkt.optimality();
+    if residual > KKT_RESIDUAL {
+        return Err(Unknown::NoOptimum { residual });
     }
     let slopes = Slopes::new(&linearized, motion);
     let cost = linearized.multipliers.values.objective * linearized.cycle.criterion_per_objective();
@@ -74,9 +106,9 @@ pub fn sensitivities(gait: &dyn Gait, criterion: Criterion, speed: f64, motion: 
     };
     let mut list = vec![entry("speed", &["speed"], "m/s", speed, slopes.in_speed())];
     for chunk in levers.chunks(LANES) {
-        let found = slopes.along(chunk)?;
+        let found = slopes.along(chunk).ok_or(Unknown::Undefined)?;
         list.extend(chunk.iter().zip(found).map(|(l, slope)| entry(l.name, l.numbers, l.unit, l.value, slope)));
     }
     list.sort_by(|a, b| b.elasticity.abs().total_cmp(&a.elasticity.abs()));
-    Some(Sensitivities { slopes: list, one_sided: linearized.unpriced() })
+    Ok(Sensitivities { slopes: list, one_sided: linearized.unpriced() })
 }

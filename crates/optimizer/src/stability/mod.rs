@@ -20,7 +20,7 @@ use crate::flow::Undefined;
 use passage::Passage;
 pub use phase::PhaseTracking;
 use piaffe_model::motion::Motion;
-use piaffe_model::{Gait, Then};
+use piaffe_model::{Gait, Mode, Then};
 use serde::{Deserialize, Serialize};
 pub use time::{Clock, TimeTracking};
 
@@ -35,15 +35,27 @@ pub struct Stability {
     pub phase: PhaseTracking,
 }
 
+/// Why it is not known what becomes of deviations from a gait.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Unknown {
+    #[error("return maps through flight are not derived")]
+    Flight,
+    #[error(transparent)]
+    Undefined(#[from] Undefined),
+}
+
 /// Looks at a periodic motion with both ways of tracking.
 ///
 /// # Errors
-/// If the equations admit no such motion.
+/// If the gait flies, or the equations admit no such motion.
 ///
 /// # Panics
 /// If the motion has not the numbers that the gait needs; `verify` tells.
-pub fn stability(gait: &dyn Gait, motion: &Motion) -> Result<Stability, Undefined> {
+pub fn stability(gait: &dyn Gait, motion: &Motion) -> Result<Stability, Unknown> {
     let d = gait.description();
+    if d.has(Mode::Flight) {
+        return Err(Unknown::Flight);
+    }
     let count = motion.half_steps.len();
     let passages = (0..count).map(|k| Passage::new(gait, motion, k)).collect::<Result<Vec<_>, _>>()?;
     // The legs swap roles: two like half steps are a step.
