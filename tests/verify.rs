@@ -4,6 +4,8 @@
 mod derivatives;
 #[path = "verify/dynamics.rs"]
 mod dynamics;
+#[path = "verify/flight.rs"]
+mod flight;
 #[path = "verify/heights.rs"]
 mod heights;
 #[path = "verify/motions.rs"]

@@ -2,7 +2,7 @@
 
 use crate::double::Double;
 use crate::motions::{gaits, stepping};
-use piaffe::certificate::enclosure::{Model, enclose};
+use piaffe::certificate::enclosure::{Model, enclose, instants};
 use piaffe::certificate::taylor::Taylor;
 use piaffe::model::Description;
 use piaffe::motion::HalfStep;
@@ -11,6 +11,7 @@ use piaffe::verify::instants::{Instants, State};
 use piaffe::verify::integrate::integrate;
 use piaffe::verify::margins::{Units, clearance};
 use piaffe::verify::numbers::Numbers;
+use piaffe::verify::swing::swings;
 
 /// The method's own coefficients have 16 digits.
 const REFERENCE: f64 = 1e-15;
@@ -39,8 +40,9 @@ fn integrated(d: &Description, h: &HalfStep, leg: usize, [from, to]: [f64; 2], y
 fn beta_is_enclosed() {
     for gait in gaits() {
         let d = gait.description();
-        for (leg, h) in stepping(d).half_steps.iter().enumerate() {
-            let pieces = enclose(d, h, leg).unwrap();
+        let phases = stepping(d).half_steps;
+        for (leg, h) in phases.iter().enumerate() {
+            let pieces = enclose(d, &phases, leg).unwrap();
             let mut y = [h.beta_initial, h.betad_initial].map(Double::from);
             let mut from = 0.0;
             for piece in &pieces {
@@ -61,12 +63,20 @@ fn beta_is_enclosed() {
     }
 }
 
-fn everything<T: Scalar>(d: &Description, h: &HalfStep, leg: usize, share: T, beta: [T; 2]) -> Vec<(String, T)> {
-    let mut instants = Instants::<T>::new(d, Numbers::new(d), &h.cast(), leg);
+fn everything<T: Scalar>(d: &Description, phases: &[HalfStep], k: usize, share: T, beta: [T; 2]) -> Vec<(String, T)> {
+    let mut instants = instants::<T>(d, phases, k);
+    let (h, cast): (_, Vec<HalfStep<T>>) = (&phases[k], phases.iter().map(HalfStep::cast).collect());
     let mut state = State::new(d);
     let acceleration = instants.at(share * h.duration.into(), beta, &mut state).unwrap();
-    let mut all = vec![("β̈".into(), acceleration), ("clearance".into(), clearance(instants.numbers(), &state, share))];
-    Units::new(d).margins(instants.numbers(), &state, |constraint, margin| all.push((constraint.name(d), margin)));
+    let mut all = vec![("β̈".into(), acceleration)];
+    for swing in swings(d, &cast, k) {
+        let above = clearance(instants.numbers(), &state, &swing, share * h.duration.into());
+        all.push((swing.constraint.name(d), above));
+    }
+    let contact = instants.contact();
+    Units::new(d).margins(instants.numbers(), &contact, &state, |constraint, margin| {
+        all.push((constraint.name(d), margin));
+    });
     all
 }
 
@@ -74,9 +84,10 @@ fn everything<T: Scalar>(d: &Description, h: &HalfStep, leg: usize, share: T, be
 fn what_follows_from_beta_is_enclosed() {
     for gait in gaits() {
         let d = gait.description();
-        for (leg, h) in stepping(d).half_steps.iter().enumerate() {
-            for piece in enclose(d, h, leg).unwrap() {
-                let models = everything::<Model>(d, h, leg, piece.share, piece.beta);
+        let phases = stepping(d).half_steps;
+        for k in 0..phases.len() {
+            for piece in enclose(d, &phases, k).unwrap() {
+                let models = everything::<Model>(d, &phases, k, piece.share, piece.beta);
                 for tau in [-1.0, -0.75, -0.125, 0.5, 0.875] {
                     let at = |m: &Model| {
                         m.coefficients().iter().rev().fold(Double::from(0.0), |s, c| s * tau.into() + Double::from(*c))
@@ -84,7 +95,7 @@ fn what_follows_from_beta_is_enclosed() {
                     for shift in [-1.0, 0.0, 1.0] {
                         // Any β and β̇ of the enclosure.
                         let beta = piece.beta.map(|b| at(&b) + Double::from(shift * b.rest()));
-                        let exact = everything(d, h, leg, at(&piece.share), beta);
+                        let exact = everything(d, &phases, k, at(&piece.share), beta);
                         for ((name, model), (_, exact)) in models.iter().zip(exact) {
                             inside(name, model, tau, exact);
                         }
@@ -100,7 +111,7 @@ fn what_cannot_be_followed_is_said_to_be_lost() {
     let d = gaits()[2].description();
     let mut h = stepping(d).half_steps[0].clone();
     h.betad_initial = 1e5;
-    assert!(enclose(d, &h, 0).is_err());
+    assert!(enclose(d, &[h.clone()], 0).is_err());
     h.betad_initial = f64::NAN;
-    assert!(enclose(d, &h, 0).is_err());
+    assert!(enclose(d, &[h], 0).is_err());
 }

@@ -8,7 +8,7 @@ use piaffe::model::{Description, Gait};
 use piaffe::motion::{Criterion, Motion};
 use piaffe::search::multi_start::{Settings, search};
 use piaffe::verify::constraint::{Constraint, Tally};
-use piaffe::verify::cycle::stance_leg;
+use piaffe::verify::contact::contact;
 use piaffe::verify::instants::State;
 use piaffe::verify::margins::Units;
 use piaffe::verify::phase::Phase;
@@ -40,11 +40,13 @@ fn tallies(d: &Description, motion: &Motion, points: usize) -> Vec<Tally> {
     let mut state = State::new(d);
     let one = |(i, h)| {
         let mut tally = Tally::new(d, i + 1);
-        let mut phase = Phase::new(d, h, stance_leg(d, i), i + 1).unwrap();
+        let mut phase = Phase::new(d, h, contact(d, &motion.half_steps, i), i + 1).unwrap();
         for k in 0..points {
             let t = phase.duration * k as f64 / (points - 1) as f64;
             phase.at(t, &mut state).unwrap();
-            Units::new(d).margins(phase.numbers(), &state, |constraint, margin| tally.note(constraint, margin, t));
+            Units::new(d).margins(phase.numbers(), &phase.contact(), &state, |constraint, margin| {
+                tally.note(constraint, margin, t)
+            });
         }
         tally
     };

@@ -18,7 +18,7 @@ fn outcome<T: Scalar>(d: &Description, numbers: Numbers<T>, half_step: &HalfStep
     let mut state = State::new(d);
     phase.at(phase.duration, &mut state).unwrap();
     let mut all = phase.beta_end().to_vec();
-    Units::new(d).margins(phase.numbers(), &state, |constraint, margin| {
+    Units::new(d).margins(phase.numbers(), &phase.contact(), &state, |constraint, margin| {
         // Across the plane a force of exactly 0 has no direction.
         if constraint != Constraint::Friction || state.force.x.value().abs() > 1.0 {
             all.push(margin);
@@ -78,13 +78,14 @@ fn instants_side_by_side_are_single_instants_to_the_bit() {
             let single = alone.at(times[lane], [beta[lane], betad[lane]], &mut own).unwrap();
             assert_eq!(single, acceleration.0[lane], "{}", d.gait);
             let mut margins = Vec::new();
-            Units::new(d).margins(alone.numbers(), &own, |_, margin| margins.push(margin));
+            Units::new(d).margins(alone.numbers(), &alone.contact(), &own, |_, margin| margins.push(margin));
             let mut k = 0;
-            Units::new(d).margins(together.numbers(), &state, |constraint, margin| {
+            Units::new(d).margins(together.numbers(), &together.contact(), &state, |constraint, margin| {
                 assert_eq!(margin.0[lane], margins[k], "{} {constraint:?}", d.gait);
                 k += 1;
             });
-            assert_eq!((own.swing.y, own.swing_velocity.y), (state.swing.y.0[lane], state.swing_velocity.y.0[lane]));
+            let (feet, velocities) = (state.feet.map(|foot| foot.y.0[lane]), state.feet_velocity.map(|v| v.y.0[lane]));
+            assert_eq!((own.feet.map(|foot| foot.y), own.feet_velocity.map(|v| v.y)), (feet, velocities));
         }
     }
     // One lane where f1 vanishes, or that is no number, is enough for none.

@@ -126,7 +126,8 @@ fn plane_and_space_agree() {
                 plane.complete(&mut flat);
                 space.complete(&mut solid);
                 assert_eq!(flat.torques, solid.torques, "{}", d.key);
-                let vectors = |s: &State| [s.force, s.platform, s.swing, s.swing_velocity];
+                let vectors =
+                    |s: &State| [s.force, s.platform, s.feet[0], s.feet[1], s.feet_velocity[0], s.feet_velocity[1]];
                 assert_eq!(vectors(&flat), vectors(&solid), "{}", d.key);
             }
         }

@@ -3,9 +3,9 @@
 //! They are neither optimal nor, in general, cycles; [`closed_trot`] is one.
 
 use piaffe::gaits::{amble::Amble, curvet::Curvet, trot::Trot};
-use piaffe::model::{Description, Gait, Rotation};
+use piaffe::model::{Description, Gait, Mode, Phase, Rotation};
 use piaffe::motion::{HalfStep, Motion};
-use piaffe::verify::{impact::impact, phase::Phase};
+use piaffe::verify::{impact::impact, phase};
 
 /// Length of a thigh and of a shin, m.
 const LINK: f64 = 0.15;
@@ -83,9 +83,13 @@ fn half_step(d: &Description, stance: usize, duration: f64) -> HalfStep {
     }
 }
 
-/// A motion with all its half steps, not a cycle.
+/// A motion with all its phases, not a cycle.
 pub fn stepping(d: &Description) -> Motion {
-    Motion { half_steps: (0..d.phases.len()).map(|k| half_step(d, k, 0.15)).collect() }
+    let phase = |phase: &Phase| match phase.mode {
+        Mode::Stance(leg) => half_step(d, leg, 0.15),
+        Mode::Flight => half_step(d, 1, 0.07),
+    };
+    Motion { half_steps: d.phases.iter().map(phase).collect() }
 }
 
 /// A trot that is a cycle: initial states from the impact, T and β̇ at the end by Newton's method.
@@ -105,7 +109,7 @@ pub fn closed_trot() -> Motion {
     };
     let gap = |duration: f64, betad_final: f64| {
         let half_step = build(duration, betad_final);
-        let end = Phase::new(d, &half_step, 0, 1).unwrap().beta_end();
+        let end = phase::Phase::new(d, &half_step, 0, 1).unwrap().beta_end();
         [end[0] - half_step.beta_final, end[1] - betad_final]
     };
     let mut x = [0.15, half_step(d, 0, 0.15).betad_final];

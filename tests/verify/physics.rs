@@ -5,10 +5,10 @@ use nalgebra::Vector3;
 use piaffe::model::{Description, Gait, Mode, Rotation};
 use piaffe::verify::{Sample, impact::impact, multibody::Multibody, sample};
 
-const POINTS: usize = 1001;
+pub const POINTS: usize = 1001;
 
 /// Fourth-order central difference of samples `h` apart, at the third of five.
-fn rate(f: [f64; 5], h: f64) -> f64 {
+pub fn rate(f: [f64; 5], h: f64) -> f64 {
     (f[0] - 8.0 * f[1] + 8.0 * f[3] - f[4]) / (12.0 * h)
 }
 
@@ -98,7 +98,7 @@ fn the_stance_foot_stays_and_torques_on_a_level_platform_cancel() {
         along(gait, |leg, five, _| {
             let s = five[2];
             multibody.set(&s.q, &s.qd, &s.qdd);
-            let apart = Vector3::from(s.platform) + multibody.foot(leg).position - Vector3::from(s.stance_foot);
+            let apart = Vector3::from(s.platform) + multibody.foot(leg).position - Vector3::from(s.feet[leg]);
             assert!(apart.as_slice()[..d.positions()].iter().all(|x| x.abs() < 1e-12), "{apart}");
             if d.rotation == Rotation::None {
                 assert!((s.torques[0] + s.torques[2]).abs() < 1e-9, "eq. 1: {:?}", s.torques);

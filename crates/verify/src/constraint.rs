@@ -26,8 +26,10 @@ pub enum Constraint {
     VerticalForce,
     /// |tangential| ≤ μ·vertical.
     Friction,
-    /// Swing foot above the parabola 4 h s (1 − s).
+    /// Swing foot above its curve.
     Clearance,
+    /// The same of this leg, where both are in the air.
+    FootClearance(usize),
     /// Platform's mass centre above the ground by its minimum.
     PlatformHeight,
     /// A joint or a corner of the platform above the ground by the body's clearance.
@@ -65,6 +67,8 @@ impl Constraint {
             Leaving,
             MeanSpeed,
             PlatformHeight,
+            FootClearance(0),
+            FootClearance(1),
         ];
         of_joints.chain(others).chain((0..description.points.len()).map(Height))
     }
@@ -84,6 +88,7 @@ impl Constraint {
             Constraint::VerticalForce => Limit::VerticalForce,
             Constraint::Friction => Limit::Friction,
             Constraint::Clearance => Limit::Clearance,
+            Constraint::FootClearance(_) => Limit::ClearanceOfFoot,
             Constraint::Touchdown => Limit::Touchdown,
             Constraint::Shortest => Limit::ShortestHalfStep,
             Constraint::Longest => Limit::LongestHalfStep,
@@ -104,6 +109,8 @@ impl Constraint {
                 description.joints.get(j).map_or("?", |joint| joint.name)
             }
             Height(point) => description.points.get(point).map_or("?", |point| point.name),
+            FootClearance(0) => "leg 1",
+            FootClearance(_) => "leg 2",
             _ => "",
         })
     }
@@ -149,7 +156,8 @@ impl Tally {
             Constraint::Leaving => joints + 8,
             Constraint::MeanSpeed => joints + 9,
             Constraint::PlatformHeight => joints + 10,
-            Constraint::Height(point) => joints + 11 + point,
+            Constraint::FootClearance(leg) => joints + 11 + leg.min(1),
+            Constraint::Height(point) => joints + 13 + point,
         };
         let Some((_, least, at)) = self.entries.get_mut(slot) else { return };
         for (margin, time) in margins.iter().zip(times) {

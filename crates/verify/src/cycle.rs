@@ -1,41 +1,46 @@
-//! Whether the half steps follow from each other (§5.2): the impact at the end of each, and how far
+//! Whether the phases follow from each other (§5.2): the impact at the end of each if there is one, and how far
 //! the motion is from a cycle.
 
 use super::constraint::Constraint;
+use super::contact::Contact;
 use super::error::VerifyError;
-use super::impact::impact_of;
+use super::impact::{Before, impact_of};
 use super::margins::Units;
 use super::multibody::Multibody;
 use super::numbers::Numbers;
-use piaffe_model::Description;
 use piaffe_model::motion::HalfStep;
+use piaffe_model::{Description, Transition};
 use piaffe_number::Scalar;
 
-/// Leg that half step `index` stands on.
-pub fn stance_leg(description: &Description, index: usize) -> usize {
-    description.phases[index].mode.stance().unwrap_or_default()
-}
-
-/// Notes the margins of the impact that ends half step `index`, and returns how far the initial state of the one after
+/// Notes the margins of the impact that ends phase `index`, if one does, and returns how far the initial state of the phase after
 /// it is from what follows (eq. 16, 18, 19): angles in rad, rates relative to themselves or to a slow rate.
 pub fn transition<T: Scalar>(
     description: &Description,
     numbers: Numbers<T>,
-    half_steps: &[HalfStep<T>],
+    phases: &[HalfStep<T>],
     index: usize,
     note: impl FnMut(Constraint, T),
 ) -> Result<Vec<T>, VerifyError> {
-    let before = &half_steps[index];
-    let after = &half_steps[(index + 1) % half_steps.len()];
+    let before = &phases[index];
+    let after = &phases[(index + 1) % phases.len()];
     let q = description.complete(&before.q_final, before.beta_final);
     let qd = description.complete(&before.qd_final, before.betad_final);
-    let landing = 1 - stance_leg(description, index);
-    let mut multibody = Multibody::with(description, numbers);
-    let impact = impact_of(&mut multibody, landing, &q, &qd).ok_or(VerifyError::Impact { half_step: index + 1 })?;
     let units = Units::new(description);
-    units.impact(multibody.numbers(), &impact.impulse, &impact.leaving, note);
-
-    let rates = &impact.after[description.positions()..];
+    let rates = match description.transition(index) {
+        Transition::TakeOff(_) => qd,
+        Transition::Touchdown(landing) | Transition::Landing(landing) => {
+            let moves = match Contact::of(description, &numbers, phases, index) {
+                Contact::Foot(_) => Before::Stance,
+                Contact::Flight(fall) => Before::Flight(fall.velocity(before.duration)),
+            };
+            let mut multibody = Multibody::with(description, numbers);
+            let impact = impact_of(&mut multibody, landing, &q, &qd, moves)
+                .ok_or(VerifyError::Impact { half_step: index + 1 })?;
+            let leaving = matches!(moves, Before::Stance).then_some(&impact.leaving);
+            units.impact(multibody.numbers(), &impact.impulse, leaving, note);
+            impact.after[description.positions()..].to_vec()
+        }
+    };
     let found = description.complete(&after.q_initial, after.beta_initial);
     let found_rates = description.complete(&after.qd_initial, after.betad_initial);
     let gaps = (0..q.len()).flat_map(|k| {

@@ -1,15 +1,17 @@
-//! A half step on a dense uniform grid: constraints, costs and peaks.
+//! A phase on a dense uniform grid: constraints, costs and peaks.
 //!
 //! Optimizers impose constraints at a few nodes; between them they can be broken. Here all that
 //! must hold at every instant (§4.2, §6.1) is evaluated at every point of the grid.
 
 use super::constraint::{Constraint, Tally};
+use super::contact::contact;
 use super::error::VerifyError;
 use super::instants::{Instants, State};
 use super::margins::{Units, clearance, steepness};
 use super::numbers::Numbers;
 use super::phase::Phase;
 use super::quadrature::{integral, integral_of_magnitude};
+use super::swing::swings;
 use piaffe_model::motion::HalfStep;
 use piaffe_number::Lanes;
 use std::array::from_fn;
@@ -33,15 +35,23 @@ const LANES: usize = 4;
 /// Evaluates `points` instants of a half step and notes the margins.
 pub fn evaluate(
     phase: &mut Phase,
-    half_step: &HalfStep,
+    motion: &[HalfStep],
+    index: usize,
     points: usize,
     tally: &mut Tally,
 ) -> Result<Totals, VerifyError> {
     let description = phase.description();
     let units = Units::new(description);
     let joints = description.joints();
-    let mut instants: Instants<Lanes<LANES>> =
-        Instants::new(description, Numbers::new(description), &half_step.cast(), phase.leg());
+    let mut instants: Instants<Lanes<LANES>> = Instants::new(
+        description,
+        Numbers::new(description),
+        &motion[index].cast(),
+        contact(description, motion, index),
+    );
+    let own = swings(description, motion, index);
+    let lanes: Vec<HalfStep<Lanes<LANES>>> = motion.iter().map(HalfStep::cast).collect();
+    let side_by_side = swings(description, &lanes, index);
     let mut state = State::new(description);
     let mut squares = vec![0.0; points];
     // One list of powers per joint.
@@ -67,33 +77,39 @@ pub fn evaluate(
                 peaks[j] = [peaks[j][0].max(torque.abs()), peaks[j][1].max(rate.abs())];
             }
         }
-        units.margins(instants.numbers(), &state, |constraint, margin| {
+        units.margins(instants.numbers(), &instants.contact(), &state, |constraint, margin| {
             tally.note_all(constraint, &margin.0[..count], &t);
         });
-        let clearance = clearance(instants.numbers(), &state, Lanes(s));
-        let [rise, fall] =
-            [false, true].map(|at_end| steepness(instants.numbers(), &state, phase.duration.into(), at_end));
+        for (swing, lanes) in own.iter().zip(&side_by_side) {
+            let numbers = instants.numbers();
+            let above = clearance(numbers, &state, lanes, Lanes(t));
+            let [rise, fall] = [false, true].map(|at_end| steepness(numbers, &state, lanes, at_end));
+            for lane in 0..count {
+                let (above, per_height) = match (first + lane, rise, fall) {
+                    (0, Some(rise), _) => (rise.0[lane], swing.descent()),
+                    (i, _, Some(fall)) if i == last => (fall.0[lane], swing.descent()),
+                    _ => (above.0[lane], swing.curve(t[lane])),
+                };
+                tally.note(swing.constraint, room(above, per_height) / units.leg, t[lane]);
+            }
+        }
         for lane in 0..count {
-            let (above, per_height) = match first + lane {
-                0 => (rise.0[lane], 4.0),
-                i if i == last => (fall.0[lane], 4.0),
-                _ => (clearance.0[lane], 4.0 * s[lane] * (1.0 - s[lane])),
-            };
-            tally.note(Constraint::Clearance, room(above, per_height) / units.leg, t[lane]);
             platform[first + lane] = state.platform.x.0[lane];
         }
     }
-    let landing = state.swing.y.0[last % LANES];
-    tally.note(Constraint::Touchdown, -landing.abs() / units.leg, phase.duration);
+    if let Some(leg) = description.transition(index).lands() {
+        let landing = state.feet[leg].y.0[last % LANES];
+        tally.note(Constraint::Touchdown, -landing.abs() / units.leg, phase.duration);
+    }
     let spacing = phase.duration / last as f64;
     let energy = powers.chunks_exact(points).map(|w| integral_of_magnitude(w, spacing)).sum();
     Ok(Totals { torque: integral(&squares, spacing), energy, travel: platform[last] - platform[0], peaks })
 }
 
-/// How much higher the parabola could be, m, where the swing foot is so much above it; what is missing, where it is below.
+/// How much higher the curve could be, m, where the foot is so much above it; what is missing, where it is below.
 ///
 /// At both ends the height is zero and the slope has to be steep enough: ±ẏ T ≥ 4 h. Near the ends
-/// any foot is close to the parabola; so room that is left is measured as the amount by which h
+/// any foot is close to the curve; so room that is left is measured as the amount by which h
 /// could grow, which goes over into the margin of the slope.
 fn room(above: f64, per_height: f64) -> f64 {
     if above > 0.0 { above / per_height } else { above }

@@ -5,7 +5,7 @@
 //! | D_jᵀ   0 | | I  | = |   0  |
 //! ```
 //!
-//! Before it the stance foot was at rest, which gives ṗ⁻ from q̇⁻ (eq. 3).
+//! Before it the stance foot was at rest, which gives ṗ⁻ from q̇⁻ (eq. 3); after a flight the mass centre's fall gives it.
 
 use super::geometry::Vec3;
 use super::margins::Units;
@@ -31,11 +31,26 @@ pub struct Impact<T = f64> {
 /// Impact on the foot of leg `landing` at the end of single support on the other leg. `None` where
 /// eq. 12 has no unique solution.
 pub fn impact(description: &Description, landing: usize, q: &[f64], qd: &[f64]) -> Option<Impact> {
-    impact_of(&mut Multibody::new(description), landing, q, qd)
+    impact_of(&mut Multibody::new(description), landing, q, qd, Before::Stance)
+}
+
+/// What tells how the platform moves before an impact.
+#[derive(Clone, Copy, Debug)]
+pub enum Before<T = f64> {
+    /// The foot of the other leg is at rest.
+    Stance,
+    /// The mass centre moves like this, forward and up, m/s.
+    Flight([T; 2]),
 }
 
 /// The same, of a mechanism with numbers of its own.
-pub fn impact_of<T: Scalar>(multibody: &mut Multibody<T>, landing: usize, q: &[T], qd: &[T]) -> Option<Impact<T>> {
+pub fn impact_of<T: Scalar>(
+    multibody: &mut Multibody<T>,
+    landing: usize,
+    q: &[T],
+    qd: &[T],
+    before: Before<T>,
+) -> Option<Impact<T>> {
     let description = multibody.description();
     let zero = T::zero();
     multibody.set(q, qd, &vec![zero; q.len()]);
@@ -47,8 +62,11 @@ pub fn impact_of<T: Scalar>(multibody: &mut Multibody<T>, landing: usize, q: &[T
         multibody.foot_jacobian(leg, &mut d);
         d
     });
-    let stance_velocity = multibody.foot(1 - landing).velocity;
-    let mut before: Vec<T> = (0..nc).map(|c| -stance_velocity[c]).collect();
+    let relative = match before {
+        Before::Stance => multibody.foot(1 - landing).velocity,
+        Before::Flight([forward, up]) => multibody.centre().velocity - Vec3::new(forward, up, zero),
+    };
+    let mut before: Vec<T> = (0..nc).map(|c| -relative[c]).collect();
     before.extend_from_slice(qd);
 
     let d = &feet[landing];

@@ -1,5 +1,6 @@
-//! Single support as a function of t, β and β̇: all that happens at an instant.
+//! A phase as a function of t, β and β̇: all that happens at an instant.
 
+use super::contact::Contact;
 use super::geometry::{Plane, Vec3};
 use super::numbers::Numbers;
 use super::polynomial::Polynomials;
@@ -8,12 +9,12 @@ use piaffe_model::Description;
 use piaffe_model::motion::HalfStep;
 use piaffe_number::Scalar;
 
-/// The instants of a half step: Q(t) is prescribed, β and β̇ come from outside.
+/// The instants of a phase: Q(t) is prescribed, β and β̇ come from outside.
 #[derive(Clone, Debug)]
 pub struct Instants<'a, T: Scalar = f64> {
     support: Either<'a, T>,
     polynomials: Polynomials<T>,
-    leg: usize,
+    contact: Contact<T>,
 }
 
 /// Computed in the sagittal plane where all motion is in it, or else in space.
@@ -33,7 +34,8 @@ macro_rules! either {
     };
 }
 
-/// All that happens at one instant. Positions and velocities are taken from the stance foot, in world axes.
+/// All that happens at one instant. Positions and velocities are taken from the stance foot, or in flight from the ground below where
+/// the mass centre took off; in world axes.
 #[derive(Clone, Debug)]
 pub struct State<T = f64> {
     pub q: Vec<T>,
@@ -45,9 +47,11 @@ pub struct State<T = f64> {
     pub force: Vec3<T>,
     /// The platform's mass centre, m.
     pub platform: Vec3<T>,
-    /// The swing foot, m.
-    pub swing: Vec3<T>,
-    pub swing_velocity: Vec3<T>,
+    /// The feet of both legs, m and m/s.
+    pub feet: [Vec3<T>; 2],
+    pub feet_velocity: [Vec3<T>; 2],
+    /// In flight how fast they are accelerated upward, m/s².
+    pub feet_acceleration: [T; 2],
     /// Of the description's points over the ground, m.
     pub heights: Vec<T>,
 }
@@ -63,31 +67,38 @@ impl<T: Scalar> State<T> {
             torques: vec![T::zero(); joints],
             force: zero,
             platform: zero,
-            swing: zero,
-            swing_velocity: zero,
+            feet: [zero; 2],
+            feet_velocity: [zero; 2],
+            feet_acceleration: [T::zero(); 2],
             heights: vec![T::zero(); description.points.len()],
         }
     }
 }
 
 impl<'a, T: Scalar> Instants<'a, T> {
-    /// Of a half step on `leg`, whose lists have a number for every prescribed coordinate.
-    pub fn new(description: &'a Description, numbers: Numbers<T>, half_step: &HalfStep<T>, leg: usize) -> Self {
+    /// Of a phase on such a contact, whose lists have a number for every prescribed coordinate.
+    pub fn new(
+        description: &'a Description,
+        numbers: Numbers<T>,
+        half_step: &HalfStep<T>,
+        contact: impl Into<Contact<T>>,
+    ) -> Self {
+        let contact = contact.into();
+        let leg = contact.stance();
         let support = if Plane::holds(description) {
             Either::Plane(Support::with(description, numbers, leg))
         } else {
             Either::Space(Support::with(description, numbers, leg))
         };
-        Instants { support, polynomials: Polynomials::new(half_step), leg }
+        Instants { support, polynomials: Polynomials::new(half_step), contact }
     }
 
     pub fn description(&self) -> &'a Description {
         either!(&self.support, support => support.multibody.description())
     }
 
-    /// On which it stands.
-    pub fn leg(&self) -> usize {
-        self.leg
+    pub fn contact(&self) -> Contact<T> {
+        self.contact
     }
 
     pub fn numbers(&self) -> &Numbers<T> {
@@ -110,6 +121,19 @@ impl<'a, T: Scalar> Instants<'a, T> {
     pub fn at(&mut self, t: T, beta: [T; 2], state: &mut State<T>) -> Option<T> {
         let acceleration = self.accelerate(t, beta, state)?;
         either!(&mut self.support, support => support.complete(state));
+        if let Contact::Flight(fall) = self.contact {
+            let ([forward, up], velocity) = (fall.place(t), fall.velocity(t));
+            for place in state.feet.iter_mut().chain([&mut state.platform]) {
+                place.x += forward;
+                place.y += up;
+            }
+            for speed in &mut state.feet_velocity {
+                speed.x += velocity[0];
+                speed.y += velocity[1];
+            }
+            state.heights.iter_mut().for_each(|height| *height += up);
+            state.feet_acceleration.iter_mut().for_each(|acceleration| *acceleration -= fall.gravity);
+        }
         Some(acceleration)
     }
 }

@@ -5,7 +5,7 @@
 //!
 //! 1. Q(t) by divided differences ([`polynomial`], eq. 15);
 //! 2. β(t) by adaptive integration of order 8 ([`integrate`], eq. 20–22) of the balance of all bodies
-//!    about the stance foot ([`support`], eq. 10), from Newton–Euler dynamics in numbers
+//!    about the stance foot or, in flight, the falling mass centre ([`support`], eq. 10; [`contact`]), from Newton–Euler dynamics in numbers
 //!    ([`multibody`], eq. 4, 5), in space or where it suffices in the plane ([`geometry`]);
 //! 3. every constraint of §4.2 and §6.1 on a dense grid (`grid.rs`, [`constraint`]), and both criteria
 //!    (eq. 13, 14) by quadrature that respects changes of sign ([`quadrature`]);
@@ -22,6 +22,7 @@
 
 pub mod certificate;
 pub mod constraint;
+pub mod contact;
 pub mod cycle;
 mod error;
 pub mod geometry;
@@ -39,6 +40,7 @@ pub mod quadrature;
 mod receipt;
 mod sample;
 pub mod support;
+pub mod swing;
 mod tableau;
 
 pub use error::VerifyError;

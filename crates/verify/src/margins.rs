@@ -1,11 +1,13 @@
 //! What is left of every limit at an instant (§4.2, §6.1): the inequalities, in numbers of any kind.
 
 use super::constraint::Constraint;
+use super::contact::Contact;
 use super::geometry::Vec3;
 use super::heights::alike;
 use super::instants::State;
 use super::numbers::Numbers;
 use super::support::leg_length;
+use super::swing::Swing;
 use piaffe_model::Description;
 use piaffe_number::Scalar;
 
@@ -64,7 +66,13 @@ impl Units {
     }
 
     /// Margins of what must hold at every instant, but for the clearance.
-    pub fn margins<T: Scalar>(&self, numbers: &Numbers<T>, state: &State<T>, mut note: impl FnMut(Constraint, T)) {
+    pub fn margins<T: Scalar>(
+        &self,
+        numbers: &Numbers<T>,
+        contact: &Contact<T>,
+        state: &State<T>,
+        mut note: impl FnMut(Constraint, T),
+    ) {
         let one = T::from(1.0);
         for (j, joint) in numbers.joints.iter().enumerate() {
             let load = state.torques[j].abs() / joint.max_torque;
@@ -75,8 +83,10 @@ impl Units {
             note(Constraint::UpperStop(j), joint.range[1] - state.q[j]);
         }
         let weight = T::from(self.weight);
-        note(Constraint::VerticalForce, (state.force.y - numbers.min_vertical_force) / weight);
-        note(Constraint::Friction, (numbers.friction * state.force.y - tangential(&state.force)) / weight);
+        if contact.stance().is_some() {
+            note(Constraint::VerticalForce, (state.force.y - numbers.min_vertical_force) / weight);
+            note(Constraint::Friction, (numbers.friction * state.force.y - tangential(&state.force)) / weight);
+        }
         let leg = T::from(self.leg);
         note(Constraint::PlatformHeight, (state.platform.y - numbers.min_platform_height) / leg);
         for k in &self.points {
@@ -84,30 +94,32 @@ impl Units {
         }
     }
 
-    /// Margins of an impact.
+    /// Margins of an impact; `leaving` is the velocity of the foot that stood, if one did.
     pub fn impact<T: Scalar>(
         &self,
         numbers: &Numbers<T>,
         impulse: &Vec3<T>,
-        leaving: &Vec3<T>,
+        leaving: Option<&Vec3<T>>,
         mut note: impl FnMut(Constraint, T),
     ) {
         let momentum = T::from(self.momentum);
         note(Constraint::VerticalImpulse, impulse.y / momentum);
         note(Constraint::ImpulseFriction, (numbers.friction * impulse.y - tangential(impulse)) / momentum);
-        note(Constraint::Leaving, leaving.y / T::from(self.speed));
+        if let Some(leaving) = leaving {
+            note(Constraint::Leaving, leaving.y / T::from(self.speed));
+        }
     }
 }
 
-/// Height of the swing foot above the parabola 4 h s (1 − s), m, in the share `s` of the half step.
-pub fn clearance<T: Scalar>(numbers: &Numbers<T>, state: &State<T>, s: T) -> T {
-    state.swing.y - numbers.swing_clearance * (T::from(4.0) * s * (T::from(1.0) - s))
+/// Height of a foot in the air above its curve, m, at time `t` of the phase.
+pub fn clearance<T: Scalar>(numbers: &Numbers<T>, state: &State<T>, swing: &Swing<T>, t: T) -> T {
+    state.feet[swing.leg].y - numbers.swing_clearance * swing.curve(t)
 }
 
-/// How much faster than the parabola the swing foot rises at the begin or falls at the end of a half step, m per half step.
-pub fn steepness<T: Scalar>(numbers: &Numbers<T>, state: &State<T>, duration: T, at_end: bool) -> T {
-    let rise = state.swing_velocity.y * duration;
-    (if at_end { -rise } else { rise }) - T::from(4.0) * numbers.swing_clearance
+/// How much faster than its curve a foot rises where its swing begins, or comes down where it ends, m per swing; none in the middle.
+pub fn steepness<T: Scalar>(numbers: &Numbers<T>, state: &State<T>, swing: &Swing<T>, at_end: bool) -> Option<T> {
+    let (h, v, a) = (numbers.swing_clearance, state.feet_velocity[swing.leg].y, state.feet_acceleration[swing.leg]);
+    if at_end { swing.ends.then(|| swing.fall(h, v)) } else { swing.begins.then(|| swing.rise(h, v, a)) }
 }
 
 /// Magnitude of the part along the ground.

@@ -142,6 +142,31 @@ impl<'a, T: Scalar, G: Geometry<T>> Multibody<'a, T, G> {
         &self.coms[body]
     }
 
+    /// The robot's mass centre, relative to the platform's.
+    pub fn centre(&self) -> Point<G::Vector> {
+        let mut mass = T::zero();
+        let mut sum =
+            Point { position: G::Vector::zero(), velocity: G::Vector::zero(), acceleration: G::Vector::zero() };
+        for (com, body) in self.coms.iter().zip(&self.numbers.bodies) {
+            mass += body.mass;
+            sum.position += com.position * body.mass;
+            sum.velocity += com.velocity * body.mass;
+            sum.acceleration += com.acceleration * body.mass;
+        }
+        let share = T::from(1.0) / mass;
+        Point { position: sum.position * share, velocity: sum.velocity * share, acceleration: sum.acceleration * share }
+    }
+
+    /// Its partial velocity in q̇ₖ.
+    pub fn partial_velocity_of_centre(&self, k: usize) -> G::Vector {
+        let (mut mass, mut sum) = (T::zero(), G::Vector::zero());
+        for (b, body) in self.numbers.bodies.iter().enumerate() {
+            mass += body.mass;
+            sum += self.partial_velocity(k, b, self.coms[b].position) * body.mass;
+        }
+        sum * (T::from(1.0) / mass)
+    }
+
     /// The part straight up of an arm in the axes of a body.
     pub fn rise(&self, body: usize, arm: &Vec3<T>) -> T {
         G::rise(&self.frames[body].axes, arm)

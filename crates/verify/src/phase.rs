@@ -1,5 +1,6 @@
-//! One half step as a function of time: Q by eq. 15, β by integration, everything else from them.
+//! One phase as a function of time: Q by eq. 15, β by integration, everything else from them.
 
+use super::contact::Contact;
 use super::error::{VerifyError, check_half_step};
 use super::instants::{Instants, State};
 use super::integrate::{Solution, integrate};
@@ -12,7 +13,7 @@ use piaffe_number::Scalar;
 /// Error allowed in a step of the integration of β, rad, and of β̇ in the unit of slow rates; relative where they are greater than 1.
 pub const TOLERANCE: f64 = 1e-12;
 
-/// A single support phase.
+/// A phase on one foot, or in flight.
 pub struct Phase<'a, T: Scalar = f64> {
     /// s.
     pub duration: f64,
@@ -26,14 +27,14 @@ pub struct Phase<'a, T: Scalar = f64> {
 }
 
 impl<'a> Phase<'a> {
-    /// Integrates β over half step `number`, 1-based, on `leg`.
+    /// Integrates β over phase `number`, 1-based, on such a contact.
     pub fn new(
         description: &'a Description,
         half_step: &HalfStep,
-        leg: usize,
+        contact: impl Into<Contact>,
         number: usize,
     ) -> Result<Self, VerifyError> {
-        Phase::with(description, Numbers::new(description), half_step, leg, number)
+        Phase::with(description, Numbers::new(description), half_step, contact, number)
     }
 }
 
@@ -43,11 +44,11 @@ impl<'a, T: Scalar> Phase<'a, T> {
         description: &'a Description,
         numbers: Numbers<T>,
         half_step: &HalfStep<T>,
-        leg: usize,
+        contact: impl Into<Contact<T>>,
         number: usize,
     ) -> Result<Self, VerifyError> {
         check_half_step(half_step, description.prescribed(), number)?;
-        let mut instants = Instants::new(description, numbers, half_step, leg);
+        let mut instants = Instants::new(description, numbers, half_step, contact);
         let mut state = State::new(description);
         let units = Units::new(description);
         let rate = |t: f64, y: &[T; 2]| {
@@ -65,9 +66,8 @@ impl<'a, T: Scalar> Phase<'a, T> {
         self.instants.description()
     }
 
-    /// On which it stands.
-    pub fn leg(&self) -> usize {
-        self.instants.leg()
+    pub fn contact(&self) -> Contact<T> {
+        self.instants.contact()
     }
 
     pub fn numbers(&self) -> &Numbers<T> {

@@ -1,7 +1,8 @@
 //! The receipt: what an independent evaluation of a motion found.
 
 use super::constraint::{Constraint, Tally};
-use super::cycle::{closure, stance_leg, transition};
+use super::contact::contact;
+use super::cycle::{closure, transition};
 use super::error::{VerifyError, check};
 use super::grid::{Totals, evaluate};
 use super::margins::Units;
@@ -81,8 +82,8 @@ pub fn verify(description: &Description, motion: &Motion, speed: f64, grid: usiz
     let mut totals: Vec<Totals> = Vec::new();
     for (i, half_step) in motion.half_steps.iter().enumerate() {
         let mut tally = Tally::new(description, i + 1);
-        let mut phase = Phase::new(description, half_step, stance_leg(description, i), i + 1)?;
-        totals.push(evaluate(&mut phase, half_step, grid, &mut tally)?);
+        let mut phase = Phase::new(description, half_step, contact(description, &motion.half_steps, i), i + 1)?;
+        totals.push(evaluate(&mut phase, &motion.half_steps, i, grid, &mut tally)?);
         let at_impact = |constraint, margin| tally.note(constraint, margin, half_step.duration);
         let gaps = transition(description, Numbers::new(description), &motion.half_steps, i, at_impact)?;
         let all = gaps.into_iter().chain(closure(&units, half_step, phase.beta_end()));

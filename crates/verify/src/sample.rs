@@ -1,12 +1,13 @@
 //! A motion as a table: states, torques and reactions at equally spaced times.
 
-use super::cycle::stance_leg;
+use super::contact::contact;
 use super::error::{VerifyError, check};
 use super::geometry::Vec3;
 use super::instants::State;
+use super::multibody::Multibody;
 use super::phase::Phase;
-use piaffe_model::Description;
 use piaffe_model::motion::Motion;
+use piaffe_model::{Description, Transition};
 use serde::{Deserialize, Serialize};
 
 /// One instant of a motion. World axes with the origin in the first stance foot; SI.
@@ -25,11 +26,11 @@ pub struct Sample {
     pub force: [f64; 3],
     /// The platform's mass centre.
     pub platform: [f64; 3],
-    pub stance_foot: [f64; 3],
-    pub swing_foot: [f64; 3],
+    /// The feet of both legs.
+    pub feet: [[f64; 3]; 2],
 }
 
-/// The motion at `points` instants of each half step, both ends included.
+/// The motion at `points` instants of each phase, both ends included.
 ///
 /// # Errors
 /// As for [`verify`](super::verify).
@@ -37,9 +38,10 @@ pub fn sample(description: &Description, motion: &Motion, points: usize) -> Resu
     check(description, motion, points)?;
     let mut samples = Vec::with_capacity(points * motion.half_steps.len());
     let mut state = State::new(description);
-    let mut foot: Vec3 = Vec3::zeros();
+    // Where positions of a phase are from.
+    let mut origin: Vec3 = Vec3::zeros();
     for (i, half_step) in motion.half_steps.iter().enumerate() {
-        let mut phase = Phase::new(description, half_step, stance_leg(description, i), i + 1)?;
+        let mut phase = Phase::new(description, half_step, contact(description, &motion.half_steps, i), i + 1)?;
         for k in 0..points {
             let t = half_step.duration * (k as f64 / (points - 1) as f64);
             phase.at(t, &mut state)?;
@@ -51,13 +53,21 @@ pub fn sample(description: &Description, motion: &Motion, points: usize) -> Resu
                 qdd: state.qdd.clone(),
                 torques: state.torques.clone(),
                 force: state.force.into(),
-                platform: (foot + state.platform).into(),
-                stance_foot: foot.into(),
-                swing_foot: (foot + state.swing).into(),
+                platform: (origin + state.platform).into(),
+                feet: state.feet.map(|foot| (origin + foot).into()),
             });
         }
-        // The foot that lands is the next to stand.
-        foot += state.swing;
+        origin = match description.transition(i) {
+            // The foot that lands is the next to stand.
+            Transition::Touchdown(leg) | Transition::Landing(leg) => origin + state.feet[leg],
+            // The mass centre takes off above where it then is.
+            Transition::TakeOff(leg) => {
+                let mut multibody = Multibody::new(description);
+                multibody.set(&state.q, &state.qd, &state.qdd);
+                let ahead = multibody.centre().position - multibody.foot(leg).position;
+                origin + Vec3::new(ahead.x, 0.0, 0.0)
+            }
+        };
     }
     Ok(samples)
 }

@@ -1,4 +1,4 @@
-//! Single support on one leg at one instant: β̈, the torques and the reaction from Q̈.
+//! Single support on one leg, or flight, at one instant: β̈, the torques and the reaction from Q̈.
 //!
 //! The stance foot S is at rest, so velocities and accelerations are those relative to it, and its
 //! reaction drops out of the balance along the free direction, in which the robot turns about S as a
@@ -10,6 +10,9 @@
 //!
 //! It is linear in β̈ with the coefficient f1 of eq. 8, which gives eq. 10. Then the reaction is
 //! F = Σ f, and the torque of a joint is the moment about its axis of all it carries (eq. 5).
+//!
+//! In flight the mass centre takes the foot's place, and the fall takes the weight away: the same balance is that of the angular
+//! momentum about it, and the reaction is zero.
 
 use super::geometry::{Geometry, Space, Vec3};
 use super::heights::{Arms, alike};
@@ -23,11 +26,12 @@ use piaffe_number::Scalar;
 /// f1 below this share of (mass × leg²) counts as zero.
 const VANISHING: f64 = 1e-9;
 
-/// The mechanism on one leg, with room for what each body contributes.
+/// The mechanism on one leg or in flight, with room for what each body contributes.
 #[derive(Clone, Debug)]
 pub struct Support<'a, T: Scalar = f64, G: Geometry<T> = Space> {
     pub multibody: Multibody<'a, T, G>,
-    leg: usize,
+    /// The leg that stands.
+    leg: Option<usize>,
     /// World axis of the free direction: 0, 1 or 2.
     axis: usize,
     loads: Vec<Load<G::Vector, G::Spin>>,
@@ -48,14 +52,14 @@ struct Load<V, S> {
 }
 
 impl<'a> Support<'a> {
-    pub fn new(description: &'a Description, leg: usize) -> Self {
+    pub fn new(description: &'a Description, leg: impl Into<Option<usize>>) -> Self {
         Support::with(description, Numbers::new(description), leg)
     }
 }
 
 impl<'a, T: Scalar, G: Geometry<T>> Support<'a, T, G> {
     /// The mechanism of `description` with other numbers.
-    pub fn with(description: &'a Description, numbers: Numbers<T>, leg: usize) -> Self {
+    pub fn with(description: &'a Description, numbers: Numbers<T>, leg: impl Into<Option<usize>>) -> Self {
         let (zero, still) = (G::Vector::zero(), G::Spin::zero());
         let load = Load { force: zero, moment: still, force_per_beta: zero, moment_per_beta: still };
         let length = leg_length(description);
@@ -67,7 +71,7 @@ impl<'a, T: Scalar, G: Geometry<T>> Support<'a, T, G> {
         Support {
             points,
             multibody: Multibody::with(description, numbers),
-            leg,
+            leg: leg.into(),
             axis: if description.rotation == Rotation::Roll { 0 } else { 2 },
             loads: vec![load; description.bodies.len()],
             carried: vec![(zero, still); description.bodies.len()],
@@ -82,15 +86,19 @@ impl<'a, T: Scalar, G: Geometry<T>> Support<'a, T, G> {
         let beta = description.unactuated;
         qdd[beta] = T::zero();
         multibody.set(q, qd, qdd);
-        let stance = multibody.foot(*leg);
-        let stance_body = description.legs[*leg].foot_body;
-        let of_stance = |k| multibody.partial_velocity(k, stance_body, stance.position);
-        let beta_of_stance = of_stance(beta);
-        let (mut balance, mut f1) = (T::zero(), T::zero());
         let numbers = multibody.numbers();
+        let (stance, beta_of_stance, weight) = match *leg {
+            Some(leg) => {
+                let stance = *multibody.foot(leg);
+                let body = description.legs[leg].foot_body;
+                (stance, multibody.partial_velocity(beta, body, stance.position), G::up(numbers.gravity))
+            }
+            None => (multibody.centre(), multibody.partial_velocity_of_centre(beta), G::Vector::zero()),
+        };
+        let (mut balance, mut f1) = (T::zero(), T::zero());
         for (b, (body, load)) in numbers.bodies.iter().zip(loads).enumerate() {
             let com = multibody.com(b);
-            let acceleration = com.acceleration - stance.acceleration + G::up(numbers.gravity);
+            let acceleration = com.acceleration - stance.acceleration + weight;
             let partial = |k| multibody.partial_velocity(k, b, com.position);
             load.force = acceleration * body.mass;
             load.moment = multibody.spin_moment(b);
@@ -128,14 +136,13 @@ impl<'a, T: Scalar, G: Geometry<T>> Support<'a, T, G> {
                 self.carried[parent].1 += carried_moment;
             }
         }
-        let stance = self.multibody.foot(self.leg).position;
-        let stance_body = description.legs[self.leg].foot_body;
+        let stance = self.leg.map(|leg| (self.multibody.foot(leg).position, description.legs[leg].foot_body));
         for (b, body) in description.bodies.iter().enumerate() {
             let Some(k) = body.coordinate else { continue };
             let (mut force, mut moment) = self.carried[b];
-            if self.multibody.moves(k, stance_body) {
+            if let Some((foot, _)) = stance.filter(|(_, body)| self.multibody.moves(k, *body)) {
                 force -= reaction;
-                moment -= G::moment(stance, reaction);
+                moment -= G::moment(foot, reaction);
             }
             let (axis, joint) = self.multibody.axis(k);
             let rotor = self.multibody.numbers().joints[k].rotor_inertia * qdd[k];
@@ -147,13 +154,25 @@ impl<'a, T: Scalar, G: Geometry<T>> Support<'a, T, G> {
     /// Completes what follows from the last [`Support::accelerate`] and the `qdd` it wrote.
     pub fn complete(&mut self, state: &mut State<T>) {
         let force = self.torques(&state.qdd, &mut state.torques);
-        let [stance, swing] = [self.leg, 1 - self.leg].map(|leg| self.multibody.foot(leg));
+        let feet = [0, 1].map(|leg| *self.multibody.foot(leg));
+        let origin = self.leg.map_or_else(|| self.multibody.centre(), |leg| feet[leg]);
         // How deep the hips are does not matter in the plane.
         let seen = |v| G::in_space(if self.multibody.description().lateral { v } else { G::flattened(v) });
-        state.force = G::in_space(force);
-        state.platform = seen(-stance.position);
-        state.swing = seen(swing.position - stance.position);
-        state.swing_velocity = G::in_space(swing.velocity - stance.velocity);
+        // In flight what is left of it is rounding.
+        state.force = if self.leg.is_some() { G::in_space(force) } else { Vec3::zeros() };
+        state.platform = seen(-origin.position);
+        state.feet = feet.map(|foot| seen(foot.position - origin.position));
+        state.feet_velocity = feet.map(|foot| G::in_space(foot.velocity - origin.velocity));
+        if self.leg.is_none() {
+            // Accelerations are as if β̈ were zero.
+            let (description, beta) = (self.multibody.description(), self.multibody.description().unactuated);
+            let of_centre = self.multibody.partial_velocity_of_centre(beta);
+            for (leg, foot) in feet.iter().enumerate() {
+                let partial = self.multibody.partial_velocity(beta, description.legs[leg].foot_body, foot.position);
+                let acceleration = foot.acceleration - origin.acceleration + (partial - of_centre) * state.qdd[beta];
+                state.feet_acceleration[leg] = G::in_space(acceleration).y;
+            }
+        }
         for (k, point) in self.points.iter().enumerate() {
             state.heights[k] = match point {
                 Ok(arms) => state.platform.y + arms.rise(&self.multibody),

@@ -15,7 +15,7 @@ use num_traits::Zero;
 use piaffe_model::motion::{HalfStep, Motion};
 use piaffe_model::{Description, Lever, Mode};
 use piaffe_number::{Dual, Scalar};
-use piaffe_verify::impact::{Impact, impact_of};
+use piaffe_verify::impact::{Before, Impact, impact_of};
 use piaffe_verify::instants::State;
 use piaffe_verify::multibody::Multibody;
 use piaffe_verify::numbers::Numbers;
@@ -125,7 +125,7 @@ impl<'a> Slopes<'a> {
         let q = constants(d.complete(&h.q_final, h.beta_final));
         let qd = constants(d.complete(&h.qd_final, h.betad_final));
         let mut multibody = Multibody::with(d, numbers.clone());
-        let impact = impact_of(&mut multibody, landing, &q, &qd)?;
+        let impact = impact_of(&mut multibody, landing, &q, &qd, Before::Stance)?;
         let height = multibody.foot(landing).position.y - multibody.foot(stance).position.y;
         Some(Landing { impact, height })
     }
@@ -233,7 +233,8 @@ fn quantities(
     }
     for (foot, swing) in swings.iter().enumerate() {
         let factor = swing.factor(&[duration], share);
-        let made_of = if factor.of == Of::Velocity { state.swing_velocity.y } else { state.swing.y };
+        let made_of =
+            if factor.of == Of::Velocity { state.feet_velocity[swing.leg].y } else { state.feet[swing.leg].y };
         values[y.clearance(foot)] = made_of.scale(factor.value);
     }
     values

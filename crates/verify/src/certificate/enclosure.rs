@@ -13,6 +13,7 @@
 //! and B were found, Picard's operator maps the tube into itself: the solution exists, is unique and does not leave it.
 
 use super::taylor::{Ball, Taylor, above};
+use crate::contact::contact;
 use crate::instants::{Instants, State};
 use crate::margins::Units;
 use crate::numbers::Numbers;
@@ -62,29 +63,36 @@ pub struct Lost {
     pub share: f64,
 }
 
-/// Encloses β and β̇ over a whole half step that starts from exactly its initial values.
+/// Encloses β and β̇ over the whole of phase `index`, which starts from exactly its initial values.
 ///
 /// # Errors
 /// If no piece, however small, has a proof.
-pub fn enclose(description: &Description, half_step: &HalfStep, leg: usize) -> Result<Vec<Piece>, Lost> {
-    let mut solver = Solver::new(description, half_step, leg);
+pub fn enclose(description: &Description, phases: &[HalfStep], index: usize) -> Result<Vec<Piece>, Lost> {
+    let half_step = &phases[index];
+    let mut solver = Solver::new(description, phases, index);
     let mut start = [half_step.beta_initial, half_step.betad_initial].map(Ball::from);
     let mut pieces = Vec::new();
     // Shares of a power of two are exact: (how many of them lie before, power).
     let mut ahead: Vec<(u32, i32)> = (0..1 << COARSEST).rev().map(|k| (k, COARSEST)).collect();
-    while let Some((index, level)) = ahead.pop() {
+    while let Some((k, level)) = ahead.pop() {
         let half = 0.5_f64.powi(level + 1);
-        let share = Model::polynomial(&[(2 * index + 1) as f64 * half, half]);
+        let share = Model::polynomial(&[(2 * k + 1) as f64 * half, half]);
         match solver.piece(share, half, start) {
             Some(piece) => {
                 start = piece.beta.map(|b| b.at(1.0));
                 pieces.push(piece);
             }
-            None if level < FINEST => ahead.extend([(2 * index + 1, level + 1), (2 * index, level + 1)]),
-            None => return Err(Lost { share: 2.0 * index as f64 * half }),
+            None if level < FINEST => ahead.extend([(2 * k + 1, level + 1), (2 * k, level + 1)]),
+            None => return Err(Lost { share: 2.0 * k as f64 * half }),
         }
     }
     Ok(pieces)
+}
+
+/// The instants of phase `index` in numbers of any kind.
+pub fn instants<'a, T: Scalar>(description: &'a Description, phases: &[HalfStep], index: usize) -> Instants<'a, T> {
+    let contact = contact(description, phases, index);
+    Instants::new(description, Numbers::new(description), &phases[index].cast(), contact)
 }
 
 struct Solver<'a> {
@@ -99,12 +107,13 @@ struct Solver<'a> {
 }
 
 impl<'a> Solver<'a> {
-    fn new(description: &'a Description, half_step: &HalfStep, leg: usize) -> Self {
+    fn new(description: &'a Description, phases: &[HalfStep], index: usize) -> Self {
+        let half_step = &phases[index];
         let node = |k| -libm::cos(std::f64::consts::PI * (k as f64 + 0.5) / ACCELERATION as f64);
         Solver {
-            plain: Instants::new(description, Numbers::new(description), half_step, leg),
-            model: Instants::new(description, Numbers::new(description), &half_step.cast(), leg),
-            gradient: Instants::new(description, Numbers::new(description), &half_step.cast(), leg),
+            plain: instants(description, phases, index),
+            model: instants(description, phases, index),
+            gradient: instants(description, phases, index),
             states: (State::new(description), State::new(description), State::new(description)),
             duration: half_step.duration,
             rate: Units::new(description).rate(),
@@ -227,7 +236,7 @@ mod tests {
         for gait in GAITS {
             let d = gait.description();
             let h = half_step(d);
-            let mut solver = Solver::new(d, &h, 0);
+            let mut solver = Solver::new(d, std::slice::from_ref(&h), 0);
             let half = 1.0 / 64.0;
             let share = Model::polynomial(&[half, half]);
             let half_time = half * h.duration;

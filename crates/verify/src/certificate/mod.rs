@@ -7,7 +7,7 @@
 //!
 //! What is claimed: for all t of the step, no margin is below −1e-6, in the natural units of
 //! [`constraint`](crate::constraint); nor at the impacts; and the motion closes to a cycle within 1e-6. A margin
-//! of the swing foot is here its plain height over the parabola; at both ends, where that is zero, its steepness counts.
+//! of a foot in the air is here its plain height over its curve; at both ends of the swing, where that is zero, its steepness counts.
 
 pub mod enclosure;
 mod functions;
@@ -16,12 +16,14 @@ mod range;
 pub mod taylor;
 
 use crate::constraint::Constraint;
-use crate::cycle::{closure, stance_leg, transition};
+use crate::contact::Contact;
+use crate::cycle::{closure, transition};
 use crate::instants::{Instants, State};
 use crate::margins::{Units, steepness};
 use crate::numbers::Numbers;
+use crate::swing::swings;
 use crate::{SMALLEST_GRID, VerifyError, check};
-use enclosure::{Piece, enclose};
+use enclosure::{Model, Piece, enclose, instants};
 use num_traits::Zero;
 use piaffe_model::Description;
 use piaffe_model::motion::{HalfStep, Motion};
@@ -127,7 +129,7 @@ pub fn certify(description: &Description, motion: &Motion, speed: f64) -> Result
     let units = Units::new(description);
     let (mut cycle_error, mut travel) = (0.0_f64, Ball::zero());
     for (i, half_step) in motion.half_steps.iter().enumerate() {
-        let pieces = match enclose(description, half_step, stance_leg(description, i)) {
+        let pieces = match enclose(description, &motion.half_steps, i) {
             Ok(pieces) => pieces,
             Err(lost) => {
                 certificate.gaps.push(Gap::of_beta(i + 1, lost.share * half_step.duration, half_step.duration));
@@ -136,8 +138,8 @@ pub fn certify(description: &Description, motion: &Motion, speed: f64) -> Result
         };
         let start = [half_step.beta_initial, half_step.betad_initial].map(Ball::from);
         let end = pieces.last().map_or(start, |piece| piece.beta.map(|b| b.at(1.0)));
-        let mut proof = during(description, half_step, i, &pieces);
-        travel += at_ends(description, &balls[i], i, [start, end], &mut proof);
+        let mut proof = during(description, &motion.half_steps, i, &pieces);
+        travel += at_ends(description, &balls, i, [start, end], &mut proof);
         let at_impact = |constraint, margin: Ball| proof.note(constraint, &margin, [1.0, 1.0]);
         let distances = transition(description, Numbers::new(description), &balls, i, at_impact);
         let all =
@@ -159,12 +161,13 @@ pub fn certify(description: &Description, motion: &Motion, speed: f64) -> Result
 }
 
 /// What must hold at every instant of half step `index`.
-fn during(description: &Description, half_step: &HalfStep, index: usize, pieces: &[Piece]) -> Proof {
-    let leg = stance_leg(description, index);
+fn during(description: &Description, phases: &[HalfStep], index: usize, pieces: &[Piece]) -> Proof {
+    let models: Vec<HalfStep<Model>> = phases.iter().map(HalfStep::cast).collect();
     let mut judge = Judge {
-        instants: Instants::new(description, Numbers::new(description), &half_step.cast(), leg),
+        instants: instants(description, phases, index),
+        swings: swings(description, &models, index),
         units: Units::new(description),
-        duration: half_step.duration,
+        duration: phases[index].duration,
         state: State::new(description),
         proof: Proof::default(),
     };
@@ -177,25 +180,34 @@ fn during(description: &Description, half_step: &HalfStep, index: usize, pieces:
 /// What must hold at the begin and the end of half step `index`, where β is in these balls. Returns the travel, m.
 fn at_ends(
     description: &Description,
-    half_step: &HalfStep<Ball>,
+    phases: &[HalfStep<Ball>],
     index: usize,
     [start, end]: [[Ball; 2]; 2],
     proof: &mut Proof,
 ) -> Ball {
     let units = Units::new(description);
-    let (numbers, leg) = (Numbers::new(description), stance_leg(description, index));
-    let mut instants = Instants::new(description, numbers, half_step, leg);
+    let (numbers, half_step) = (Numbers::new(description), &phases[index]);
+    let contact = Contact::of(description, &numbers, phases, index);
+    let mut instants = Instants::new(description, numbers, half_step, contact);
+    let swings = swings(description, phases, index);
     let mut at = |share: f64, beta: [Ball; 2]| {
         let mut state = State::new(description);
         if instants.at(half_step.duration.scale(share), beta, &mut state).is_none() {
-            (state.platform.x, state.swing.y, state.swing_velocity.y) = (Ball::UNKNOWN, Ball::UNKNOWN, Ball::UNKNOWN);
+            state.platform.x = Ball::UNKNOWN;
+            state.feet.iter_mut().chain(&mut state.feet_velocity).for_each(|foot| foot.y = Ball::UNKNOWN);
+            state.feet_acceleration = [Ball::UNKNOWN; 2];
         }
-        let steep = steepness(instants.numbers(), &state, half_step.duration, share == 1.0) / units.leg.into();
-        proof.note(Constraint::Clearance, &steep, [share, share]);
+        for swing in &swings {
+            if let Some(steep) = steepness(instants.numbers(), &state, swing, share == 1.0) {
+                proof.note(swing.constraint, &(steep / units.leg.into()), [share, share]);
+            }
+        }
         state
     };
     let [first, last] = [at(0.0, start), at(1.0, end)];
-    proof.note(Constraint::Touchdown, &(-last.swing.y.abs() / units.leg.into()), [1.0, 1.0]);
+    if let Some(leg) = description.transition(index).lands() {
+        proof.note(Constraint::Touchdown, &(-last.feet[leg].y.abs() / units.leg.into()), [1.0, 1.0]);
+    }
     units.duration(instants.numbers(), index, half_step.duration, |constraint, margin| {
         proof.note(constraint, &margin, [1.0, 1.0]);
     });

@@ -6,6 +6,7 @@ use super::taylor::Taylor;
 use crate::constraint::Constraint;
 use crate::instants::{Instants, State};
 use crate::margins::{Units, clearance};
+use crate::swing::Swing;
 use piaffe_number::Scalar;
 
 /// How often a piece is halved at most.
@@ -65,6 +66,7 @@ impl Proof {
 /// Decides the constraints that must hold at every instant.
 pub struct Judge<'a> {
     pub instants: Instants<'a, Model>,
+    pub swings: Vec<Swing<Model>>,
     pub units: Units,
     /// s.
     pub duration: f64,
@@ -107,9 +109,13 @@ impl Judge<'_> {
         let defined = self.instants.at(t, piece.beta, &mut self.state).is_some();
         let mut margins = Vec::new();
         let numbers = self.instants.numbers();
-        self.units.margins(numbers, &self.state, |constraint, margin| margins.push((constraint, margin)));
-        let above = clearance(numbers, &self.state, piece.share) / self.units.leg.into();
-        margins.push((Constraint::Clearance, above));
+        self.units.margins(numbers, &self.instants.contact(), &self.state, |constraint, margin| {
+            margins.push((constraint, margin))
+        });
+        for swing in &self.swings {
+            let above = clearance(numbers, &self.state, swing, t) / self.units.leg.into();
+            margins.push((swing.constraint, above));
+        }
         if !defined {
             margins.iter_mut().for_each(|(_, margin)| *margin = Model::UNKNOWN);
         }
