@@ -1,7 +1,10 @@
 //! Orbital stability: the linearized return maps against steps that are really simulated.
 
+#[path = "flight/gaits.rs"]
+mod flight;
+
 use piaffe::gaits::GAITS;
-use piaffe::model::{Description, Gait, Mode, Then, UP};
+use piaffe::model::{Description, FORWARD, Gait, Mode, Then, Transition, UP};
 use piaffe::motion::{Criterion, Motion};
 use piaffe::search::multi_start::{Settings, search};
 use piaffe::stability::{PhaseTracking, TimeTracking, stability};
@@ -21,13 +24,15 @@ struct Tracked<'a> {
     restarts: bool,
 }
 
-/// In half step `phase` at the clock's `time`: β and σ.
-#[derive(Clone, Copy, Debug)]
+/// In a phase at the clock's `time`: β and σ, and in flight the mass centre's height and velocity, forward and up.
+#[derive(Clone, Copy, Debug, Default)]
 struct At {
     phase: usize,
     time: f64,
     beta: f64,
     sigma: f64,
+    height: f64,
+    velocity: [f64; 2],
 }
 
 impl<'a> Tracked<'a> {
@@ -56,12 +61,7 @@ impl<'a> Tracked<'a> {
         self.d.phases[phase].mode
     }
 
-    /// The leg whose foot lands at the end of a half step.
-    fn lands(&self, phase: usize) -> usize {
-        self.d.transition(phase).lands().unwrap()
-    }
-
-    /// q, or its rates, as the half step after `phase` names them.
+    /// q, or its rates, as the phase after `phase` names them.
     fn renamed(&self, phase: usize, values: &[f64]) -> Vec<f64> {
         let name = |k| self.d.renamed(phase, k);
         (0..values.len()).map(name).map(|(from, sign)| sign * values[from]).collect()
@@ -69,56 +69,85 @@ impl<'a> Tracked<'a> {
 
     /// f1, f2, σ, c, σ̇ for these velocities.
     fn terms(&self, phase: usize, q: &[f64], qd: &[f64]) -> [f64; 5] {
-        let mut terms = [0.0; 5];
+        let shape = &self.d.shape(self.mode(phase)).momentum_terms;
+        let mut terms = shape.zeros();
         self.gait.momentum_terms(self.mode(phase), q, qd, &mut terms);
-        terms
+        // Gravity has no moment about the mass centre.
+        [shape.f1, shape.f2, shape.sigma, shape.c, shape.sigmadot].map(|block| block.of(&terms).iter().sum())
     }
 
     /// Follows (β, σ) until the clock's `time`.
     fn until(&self, at: At, time: f64) -> At {
+        let t = time - at.time;
         let rate = |t: f64, y: &[f64; 2]| {
             let [q, qd] = self.posture(at.phase, t, y[0]);
             let [f1, f2, _, _, moment] = self.terms(at.phase, &q, &qd);
             Some([(y[1] - f2) / f1, moment])
         };
         let [beta, sigma] = integrate(rate, at.time, time, [at.beta, at.sigma], 1e-13).unwrap().end();
-        At { time, beta, sigma, ..at }
+        let mut at = At { time, beta, sigma, ..at };
+        if self.mode(at.phase) == Mode::Flight {
+            let [_, up] = &mut at.velocity;
+            at.height += t * (*up - 0.5 * self.d.gravity * t);
+            *up -= self.d.gravity * t;
+        }
+        at
     }
 
-    fn height(&self, at: &At) -> f64 {
+    /// Of the foot that lands.
+    fn height(&self, at: &At, lands: usize) -> f64 {
         let [q, _] = self.posture(at.phase, at.time, at.beta);
-        let (mode, shape) = (self.mode(at.phase), &self.d.shapes.stance.placement);
+        let mode = self.mode(at.phase);
+        let shape = &self.d.shape(mode).placement;
         let mut placement = shape.zeros();
         self.gait.placement(mode, &q, &mut placement);
-        shape.swing.of(&placement)[UP]
+        let foot = mode.swinging().position(|leg| leg == lands).unwrap();
+        at.height + shape.swing.of(&placement)[foot * self.d.positions() + UP]
     }
 
-    /// Follows the motion until the foot is on the ground, near the gait's time.
-    fn until_landing(&self, at: At) -> At {
+    /// Follows the motion until the foot is on the ground, near the gait's time, or to the time at which one leaves.
+    fn until_end(&self, at: At) -> At {
         let duration = self.durations[at.phase];
+        let Some(lands) = self.d.transition(at.phase).lands() else { return self.until(at, duration) };
         let before = self.until(at, 0.9 * duration);
-        let below = |k: &f64| self.height(&self.until(before, k * duration)) < 0.0;
+        let below = |k: &f64| self.height(&self.until(before, k * duration), lands) < 0.0;
         let late = (0..40).map(|k| 0.98 + 0.001 * f64::from(k)).find(below).expect("the foot lands");
         let (mut early, mut late) = ((late - 0.001) * duration, late * duration);
         for _ in 0..60 {
             let middle = 0.5 * (early + late);
-            if self.height(&self.until(before, middle)) > 0.0 { early = middle } else { late = middle }
+            if self.height(&self.until(before, middle), lands) > 0.0 { early = middle } else { late = middle }
         }
         self.until(before, 0.5 * (early + late))
     }
 
-    /// Through the landing: the impact, and the joints taken to where the next references want them, with σ kept.
-    fn land(&self, at: At) -> At {
+    /// Through the transition: the impact if there is one, and the joints taken to where the next references want them, with σ kept.
+    fn cross(&self, at: At) -> At {
         let [q, mut qd] = self.posture(at.phase, at.time, at.beta);
         let [f1, f2, ..] = self.terms(at.phase, &q, &qd);
         qd[self.d.unactuated] = (at.sigma - f2) / f1;
         let nc = self.d.positions();
         let mut velocity = vec![0.0; nc];
         self.gait.platform_velocity(self.mode(at.phase), &q, &qd, &mut velocity);
-        let mut impact = self.d.shapes.impact.zeros();
-        self.gait.impact(self.lands(at.phase), &q, &[&velocity[..], &qd].concat(), &mut impact);
-        let (q, qd) =
-            (self.renamed(at.phase, &q), self.renamed(at.phase, &self.d.shapes.impact.xd_plus.of(&impact)[nc..]));
+        velocity.iter_mut().zip(at.velocity).for_each(|(v, centre)| *v += centre);
+        let moving = [&velocity[..], &qd].concat();
+        let mut after = At::default();
+        let qd = match self.d.transition(at.phase) {
+            Transition::Touchdown(leg) | Transition::Landing(leg) => {
+                let mut impact = self.d.shapes.impact.zeros();
+                self.gait.impact(leg, &q, &moving, &mut impact);
+                self.d.shapes.impact.xd_plus.of(&impact)[nc..].to_vec()
+            }
+            Transition::TakeOff(_) => {
+                let (placed, shape) = (&self.d.shapes.stance.placement, &self.d.shapes.centre_of_mass);
+                let (mut placement, mut centre) = (placed.zeros(), shape.zeros());
+                self.gait.placement(self.mode(at.phase), &q, &mut placement);
+                self.gait.centre_of_mass(&[placed.p.of(&placement), &q].concat(), &moving, &mut centre);
+                after.height = shape.position.of(&centre)[UP];
+                after.velocity = [FORWARD, UP].map(|component| shape.velocity.of(&centre)[component]);
+                qd
+            }
+        };
+        let (q, qd) = (self.renamed(at.phase, &q), self.renamed(at.phase, &qd));
         let phase = (at.phase + 1) % self.durations.len();
         let sigma = self.terms(phase, &q, &qd)[2];
         let time = if self.restarts { 0.0 } else { at.time - self.durations[at.phase] };
@@ -132,15 +161,15 @@ impl<'a> Tracked<'a> {
         };
         let turn = |share: f64, y: &[f64; 1]| Some([way(share, y[0])]);
         let [beta] = integrate(turn, 0.0, 1.0, [q[self.d.unactuated]], 1e-13).unwrap().end();
-        At { phase, time, beta, sigma }
+        At { phase, time, beta, sigma, ..after }
     }
 
-    /// From the middle of the first half step to the middle of the next that is like it.
+    /// From the middle of the first phase, in which a foot stands, to the middle of the next that is like it.
     fn round(&self, beta: f64, sigma: f64) -> [f64; 2] {
         let middle = |phase: usize| 0.5 * self.durations[phase];
-        let mut at = At { phase: 0, time: middle(0), beta, sigma };
+        let mut at = At { phase: 0, time: middle(0), beta, sigma, ..At::default() };
         for _ in 0..self.durations.len() {
-            at = self.land(self.until_landing(at));
+            at = self.cross(self.until_end(at));
             at = self.until(at, middle(at.phase));
         }
         [at.beta, at.sigma]
@@ -153,7 +182,7 @@ fn differences(tracked: &Tracked, motion: &Motion) -> [f64; 2] {
     let [q, mut qd] = tracked.posture(0, 0.0, start.beta_initial);
     qd[tracked.d.unactuated] = start.betad_initial;
     let sigma = tracked.terms(0, &q, &qd)[2];
-    let at = At { phase: 0, time: 0.0, beta: start.beta_initial, sigma };
+    let at = At { phase: 0, time: 0.0, beta: start.beta_initial, sigma, ..At::default() };
     let middle = tracked.until(at, 0.5 * start.duration);
     let returned = tracked.round(middle.beta, middle.sigma);
     assert!(
@@ -181,13 +210,20 @@ fn trace_and_determinant(t: &TimeTracking) -> [f64; 2] {
 
 #[test]
 fn the_map_of_time_tracking_is_that_of_simulated_steps() {
-    for (gait, criterion) in GAITS.iter().flat_map(|g| Criterion::ALL.map(|c| (*g, c))) {
-        let motion = optimum(gait, criterion);
+    let of_walk = |(gait, criterion): (&'static dyn Gait, Criterion)| {
+        (gait as &dyn Gait, format!("{} {criterion:?}", gait.description().key), optimum(gait, criterion))
+    };
+    let walks: Vec<_> = GAITS.iter().flat_map(|g| Criterion::ALL.map(|c| of_walk((*g, c)))).collect();
+    let flights = flight::optima();
+    let flights =
+        flights.iter().map(|(gait, motion)| (gait as &dyn Gait, gait.description().gait.into(), motion.clone()));
+    for (gait, name, motion) in walks.into_iter().chain(flights) {
         let found = stability(gait, &motion).unwrap();
+        assert_eq!(found.phase == PhaseTracking::Flight, gait.description().has(Mode::Flight), "{name}");
         for (restarts, map) in [(false, &found.clock), (true, &found.restarted_clock)] {
             let (expected, exact) =
                 (differences(&Tracked::new(gait, &motion, restarts), &motion), trace_and_determinant(map));
-            let name = format!("{} {criterion:?}, clock restarts: {restarts}", gait.description().key);
+            let name = format!("{name}, clock restarts: {restarts}");
             for (a, b) in exact.iter().zip(expected) {
                 assert!(
                     (a - b).abs() < 1e-4 * (1.0 + exact[0].abs().max(exact[1].abs())),
@@ -265,7 +301,7 @@ impl Driven<'_> {
         let [q, mut qd] = self.tracked.posture(0, 0.0, start.beta_initial);
         qd[self.tracked.d.unactuated] = start.betad_initial;
         let sigma = self.tracked.terms(0, &q, &qd)[2];
-        let at = At { phase: 0, time: 0.0, beta: start.beta_initial, sigma };
+        let at = At { phase: 0, time: 0.0, beta: start.beta_initial, sigma, ..At::default() };
         let At { beta, sigma, .. } = self.tracked.until(at, 0.5 * start.duration);
         let h = 1e-5;
         let column = |b: f64, s: f64| {
@@ -300,7 +336,7 @@ fn along_the_path(tracked: &Tracked, motion: &Motion, phase: usize, entry: f64) 
     let start = {
         let [q, mut qd] = tracked.posture(phase, 0.0, h.beta_initial);
         qd[tracked.d.unactuated] = h.betad_initial;
-        At { phase, time: 0.0, beta: h.beta_initial, sigma: tracked.terms(phase, &q, &qd)[2] }
+        At { phase, time: 0.0, beta: h.beta_initial, sigma: tracked.terms(phase, &q, &qd)[2], ..At::default() }
     };
     // Newton's law in small steps of τ, by the midpoint rule: σ̇ is gravity's, τ̇ the share of the gait's velocity.
     let (steps, mut at) = (2000, start);
@@ -330,7 +366,7 @@ fn along_the_path(tracked: &Tracked, motion: &Motion, phase: usize, entry: f64) 
     tracked.gait.platform_velocity(tracked.mode(phase), &q, &qd, &mut velocity);
     let landed = &tracked.d.shapes.impact;
     let mut impact = landed.zeros();
-    tracked.gait.impact(tracked.lands(phase), &q, &[&velocity[..], &qd].concat(), &mut impact);
+    tracked.gait.impact(tracked.d.transition(phase).lands().unwrap(), &q, &[&velocity[..], &qd].concat(), &mut impact);
     let (q, qd) = (tracked.renamed(phase, &q), tracked.renamed(phase, &landed.xd_plus.of(&impact)[velocity.len()..]));
     Some(tracked.terms((phase + 1) % tracked.d.phases.len(), &q, &qd)[2])
 }

@@ -10,10 +10,15 @@ pub fn section(r: &GaitResult) -> Markup {
         PhaseTracking::Map { phase, .. } => format!("by a phase: the {phase}"),
         _ => "by a phase of the posture".into(),
     };
+    let flying = if stability.phase == PhaseTracking::Flight {
+        ", and in flight about its mass centre as it did when it left"
+    } else {
+        ""
+    };
     html! {
         div.receipt {
             h3 { "After a push" }
-            p { "Joints that are kept exactly where they are wanted leave the robot one freedom: it turns about its stance foot as gravity likes. What becomes of a small push there depends on what tells the joints where to be." }
+            p { "Joints that are kept exactly where they are wanted leave the robot one freedom: it turns about its stance foot as gravity likes" (flying) ". What becomes of a small push there depends on what tells the joints where to be." }
             dl {
                 dt { "by the clock" } dd { (stability.clock) ". " (eigenvalues(&stability.clock)) }
                 dt { "by a clock that starts anew at each landing" } dd { (stability.restarted_clock) ". " (eigenvalues(&stability.restarted_clock)) }

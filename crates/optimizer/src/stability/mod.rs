@@ -1,7 +1,8 @@
 //! Orbital stability: does the gait recover from a push, how fast, and under which control.
 //!
 //! Four joints cannot hold five coordinates: while the joints are kept where they are wanted, the robot turns about its stance
-//! foot as gravity likes. How a deviation of that free motion comes back after a step depends on what "wanted" means:
+//! foot as gravity likes, and in flight about its mass centre as it did when it left. How a deviation of that free motion comes
+//! back after a step depends on what "wanted" means:
 //!
 //! - as functions of time ([`time`]): the joints' references run on by the clock. A deviation is one of (β, σ), and the return
 //!   map is 2 × 2;
@@ -20,7 +21,7 @@ use crate::flow::Undefined;
 use passage::Passage;
 pub use phase::PhaseTracking;
 use piaffe_model::motion::Motion;
-use piaffe_model::{Gait, Mode, Then};
+use piaffe_model::{Gait, Then};
 use serde::{Deserialize, Serialize};
 pub use time::{Clock, TimeTracking};
 
@@ -35,30 +36,18 @@ pub struct Stability {
     pub phase: PhaseTracking,
 }
 
-/// Why it is not known what becomes of deviations from a gait.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum Unknown {
-    #[error("return maps through flight are not derived")]
-    Flight,
-    #[error(transparent)]
-    Undefined(#[from] Undefined),
-}
-
 /// Looks at a periodic motion with both ways of tracking.
 ///
 /// # Errors
-/// If the gait flies, or the equations admit no such motion.
+/// If the equations admit no such motion.
 ///
 /// # Panics
 /// If the motion has not the numbers that the gait needs; `verify` tells.
-pub fn stability(gait: &dyn Gait, motion: &Motion) -> Result<Stability, Unknown> {
+pub fn stability(gait: &dyn Gait, motion: &Motion) -> Result<Stability, Undefined> {
     let d = gait.description();
-    if d.has(Mode::Flight) {
-        return Err(Unknown::Flight);
-    }
     let count = motion.half_steps.len();
     let passages = (0..count).map(|k| Passage::new(gait, motion, k)).collect::<Result<Vec<_>, _>>()?;
-    // The legs swap roles: two like half steps are a step.
+    // The legs swap roles: two like halves are a step.
     let repeats = if d.then == Then::Mirrored { 2 } else { 1 };
     Ok(Stability {
         clock: TimeTracking::new(gait, &passages, repeats, Clock::RunsOn),

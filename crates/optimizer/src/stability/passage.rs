@@ -1,15 +1,15 @@
-//! A half step of the gait and the landing that ends it, with what small deviations need to know of them.
+//! A phase of the gait and the transition that ends it, with what small deviations need to know of them.
 
 use crate::cycle::elements;
 use crate::flow::{self, Flow, Layout, Mesh, Undefined};
 use piaffe_model::motion::{HalfStep, Motion};
-use piaffe_model::{Description, Gait, Mode, UP};
+use piaffe_model::{Description, FORWARD, Gait, Mode, Transition, UP};
 use piaffe_sqp::dot;
 
-/// Intervals per half step at whose ends the motion is looked at.
+/// Intervals per phase at whose ends the motion is looked at.
 const INSTANTS: usize = 500;
 
-/// One half step, from just after a landing to just after the next one.
+/// One phase, from just after a transition to just after the next one.
 pub struct Passage {
     /// Which of the gait's.
     pub index: usize,
@@ -19,9 +19,11 @@ pub struct Passage {
     pub flow: [[f64; 2]; 2],
     /// Instants in order of time.
     pub instants: Vec<Instant>,
-    /// The landing, before the legs swap names.
-    pub landing: Landing,
-    /// The beginning of the half step that follows.
+    /// The state at its end, before the transition.
+    pub end: End,
+    /// The transition, before the legs swap names.
+    pub crossing: Crossing,
+    /// The beginning of the phase that follows.
     pub next: Start,
 }
 
@@ -41,23 +43,39 @@ pub struct Instant {
     pub sigma: f64,
 }
 
-/// The end of a half step: the state before the impact, and the impact's derivatives.
-pub struct Landing {
+/// The end of a phase.
+pub struct End {
     /// With q̈.
     pub state: State,
     /// ∂β̇/∂β and ∂β̇/∂σ where Q and Q̇ are kept.
     pub betad: [f64; 2],
-    /// ∂(height of the landing foot)/∂q, m/rad.
-    pub height: Vec<f64>,
-    /// ∂q̇⁺/∂(q, q̇⁻), a row for each of q̇⁺.
-    impact: Vec<f64>,
 }
 
-/// The beginning of a half step, on its own leg and with its own names.
+/// What a transition makes of a deviation.
+pub enum Crossing {
+    /// A foot lands, as early or late as it meets the ground.
+    Lands {
+        /// ∂(height of the landing foot)/∂q, m/rad; in flight from the mass centre.
+        height: Vec<f64>,
+        /// At which it comes down, m/s; negative.
+        speed: f64,
+        /// ∂q̇⁺/∂(q, q̇⁻), out of flight ∂q̇⁺/∂(q, v⁻, q̇⁻), a row for each of q̇⁺; v is the mass centre's velocity.
+        impact: Vec<f64>,
+    },
+    /// A foot leaves into flight, when the clock of the references says so: then they lift it.
+    Leaves {
+        /// ∂(height of the mass centre)/∂q, m/rad.
+        height: Vec<f64>,
+        /// ∂(its velocity)/∂(q, q̇), forward and up.
+        velocity: [Vec<f64>; 2],
+    },
+}
+
+/// The beginning of a phase, in its own mode and with its own names.
 pub struct Start {
     pub qd: Vec<f64>,
     pub sigma: f64,
-    /// Moment of gravity, N·m.
+    /// Moment of gravity, N·m; none in flight.
     pub sigmad: f64,
     /// ∂σ/∂q and ∂σ/∂q̇; the latter's entry of β is f1.
     pub by_q: Vec<f64>,
@@ -65,7 +83,7 @@ pub struct Start {
 }
 
 impl Passage {
-    /// Half step `k` of a motion.
+    /// Phase `k` of a motion.
     ///
     /// # Errors
     /// If the equations admit no such motion.
@@ -93,12 +111,14 @@ impl Passage {
             (0..=INSTANTS).map(|i| instant(i as f64 / INSTANTS as f64)).collect();
         let instants = instants?;
         let (by_beta, by_sigma, _) = flow.partials(last);
+        let end = End { state: instant(1.0)?.state, betad: [by_beta, by_sigma] };
         Ok(Passage {
             index: k,
             mode,
             duration: half_step.duration,
             flow: [row(&flow.beta_p), row(&flow.sigma_p)],
-            landing: Landing::new(gait, mode, instant(1.0)?.state, [by_beta, by_sigma]),
+            crossing: Crossing::new(gait, motion, k, &end.state),
+            end,
             instants,
             next: Start::new(gait, &motion.half_steps[next], d.phases[next].mode),
         })
@@ -109,13 +129,13 @@ impl Passage {
         &self.instants[0]
     }
 
-    /// The state at its end, before the impact.
-    pub fn end(&self) -> &Instant {
+    /// The state at its end, before the transition.
+    pub fn last(&self) -> &Instant {
         &self.instants[self.instants.len() - 1]
     }
 }
 
-/// Local parameters of a half step: see `stance`.
+/// Local parameters of a phase: see `flow`. Those that (β, σ) do not depend on stay zero.
 fn parameters(gait: &dyn Gait, h: &HalfStep, mode: Mode, layout: &Layout) -> Vec<f64> {
     let mut parameters = vec![0.0; layout.len()];
     for j in 0..layout.prescribed {
@@ -130,32 +150,62 @@ fn parameters(gait: &dyn Gait, h: &HalfStep, mode: Mode, layout: &Layout) -> Vec
     parameters
 }
 
-impl Landing {
-    fn new(gait: &dyn Gait, mode: Mode, state: State, betad: [f64; 2]) -> Landing {
+impl Crossing {
+    /// After phase `k`, from the state at its end.
+    fn new(gait: &dyn Gait, motion: &Motion, k: usize, state: &State) -> Crossing {
         let d = gait.description();
-        let mut placement = d.shape(mode).placement.zeros();
-        gait.placement(mode, &state.q, &mut placement);
-        let mut touchdown = d.shapes.touchdown.zeros();
-        let lands = mode.swinging().next().unwrap_or_default();
-        gait.touchdown(lands, &state.q, &state.qd, &mut touchdown);
-        Landing {
-            height: d.shape(mode).placement.swing_q.row(&placement, UP).to_vec(),
-            impact: d.shapes.touchdown.qd_plus_w.of(&touchdown).to_vec(),
-            state,
-            betad,
+        let (mode, transition, State { q, qd, .. }) = (d.phases[k].mode, d.transition(k), state);
+        let of_foot = |leg: usize| {
+            let shape = d.shape(mode).placement;
+            let mut placement = shape.zeros();
+            gait.placement(mode, q, &mut placement);
+            let foot = mode.swinging().position(|other| other == leg).unwrap_or_default();
+            shape.swing_q.row(&placement, foot * d.positions() + UP).to_vec()
+        };
+        match transition {
+            Transition::Touchdown(leg) => {
+                let mut touchdown = d.shapes.touchdown.zeros();
+                gait.touchdown(leg, q, qd, &mut touchdown);
+                let height = of_foot(leg);
+                let impact = d.shapes.touchdown.qd_plus_w.of(&touchdown).to_vec();
+                Crossing::Lands { speed: dot(&height, qd), height, impact }
+            }
+            Transition::Landing(leg) => {
+                let velocity = falling(gait, motion, k);
+                let mut landing = d.shapes.landing.zeros();
+                gait.landing(leg, q, &velocity, qd, &mut landing);
+                let height = of_foot(leg);
+                let impact = d.shapes.landing.qd_plus_w.of(&landing).to_vec();
+                Crossing::Lands { speed: dot(&height, qd) + velocity[UP], height, impact }
+            }
+            Transition::TakeOff(leg) => {
+                let (shape, takeoff) = (&d.shapes.takeoff, takeoff(gait, leg, q, qd));
+                Crossing::Leaves {
+                    height: shape.r_q.row(&takeoff, UP).to_vec(),
+                    velocity: [FORWARD, UP].map(|component| shape.v_w.row(&takeoff, component).to_vec()),
+                }
+            }
         }
     }
+}
 
-    /// What a change of (q, q̇⁻) does to q̇⁺.
-    pub fn impact(&self, by_q: &[f64], by_qd: &[f64]) -> Vec<f64> {
-        let rows = self.impact.chunks(2 * by_q.len());
-        rows.map(|row| dot(&row[..by_q.len()], by_q) + dot(&row[by_q.len()..], by_qd)).collect()
-    }
+/// The mass centre's velocity at the end of a flight `k`, forward and up, m/s.
+fn falling(gait: &dyn Gait, motion: &Motion, k: usize) -> [f64; 2] {
+    let (d, count) = (gait.description(), motion.half_steps.len());
+    let before = (k + count - 1) % count;
+    let Transition::TakeOff(leg) = d.transition(before) else { return [f64::NAN; 2] };
+    let h = &motion.half_steps[before];
+    let (q, qd) = (d.complete(&h.q_final, h.beta_final), d.complete(&h.qd_final, h.betad_final));
+    let takeoff = takeoff(gait, leg, &q, &qd);
+    let velocity = d.shapes.takeoff.v.of(&takeoff);
+    [velocity[FORWARD], velocity[UP] - d.gravity * motion.half_steps[k].duration]
+}
 
-    /// Speed at which the foot comes down, m/s; negative.
-    pub fn speed(&self) -> f64 {
-        dot(&self.height, &self.state.qd)
-    }
+/// The take-off of a foot: its kernel, with accelerations that are of no matter here.
+fn takeoff(gait: &dyn Gait, leg: usize, q: &[f64], qd: &[f64]) -> Vec<f64> {
+    let mut takeoff = gait.description().shapes.takeoff.zeros();
+    gait.takeoff(leg, q, qd, &vec![0.0; q.len()], &mut takeoff);
+    takeoff
 }
 
 impl Start {
@@ -170,7 +220,7 @@ impl Start {
         Start {
             qd,
             sigma: d.shape(mode).momentum.sigma.value(&momentum),
-            sigmad: d.shape(mode).momentum_terms.sigmadot.value(&terms),
+            sigmad: d.shape(mode).momentum_terms.sigmadot.of(&terms).iter().sum(),
             by_q: by_q.to_vec(),
             by_qd: by_qd.to_vec(),
         }
@@ -191,5 +241,6 @@ fn acceleration(gait: &dyn Gait, mode: Mode, at: &flow::State) -> Vec<f64> {
     let d = gait.description();
     let mut inverse = d.shape(mode).inverse.zeros();
     gait.inverse(mode, &at.q, &at.qd, &at.prescribed[2], &mut inverse);
-    d.shape(mode).inverse.xdd.of(&inverse)[d.positions()..].to_vec()
+    let xdd = d.shape(mode).inverse.xdd.of(&inverse);
+    xdd[xdd.len() - at.q.len()..].to_vec()
 }

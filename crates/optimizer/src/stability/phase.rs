@@ -15,7 +15,8 @@
 //! ```
 //!
 //! The gait recovers exactly if gravity speeds it up between landings, which take from its momentum what gravity has given.
-//! Nothing of this holds where σ* vanishes inside a half step: there all velocities along the path have the same σ.
+//! Nothing of this holds where σ* vanishes inside a half step: there all velocities along the path have the same σ. Nor in flight,
+//! where the robot that is slower falls as fast: it does not stay on its path.
 
 use super::halving;
 use super::passage::{Instant, Passage};
@@ -47,11 +48,16 @@ pub enum PhaseTracking {
     },
     /// No quantity that is looked at grows all the time.
     NoPhase,
+    /// In flight the mass centre falls by the world's clock, not by a phase of the posture.
+    Flight,
 }
 
 impl PhaseTracking {
     /// From the half steps that define the gait, of which a step is `repeats` rounds.
     pub fn new(gait: &dyn Gait, passages: &[Passage], repeats: usize) -> PhaseTracking {
+        if gait.description().has(Mode::Flight) {
+            return PhaseTracking::Flight;
+        }
         if let Some((half_step, time)) = passages.iter().enumerate().find_map(|(k, p)| Some((k + 1, vanishing(p)?))) {
             return PhaseTracking::Singular { half_step, time };
         }
@@ -61,7 +67,7 @@ impl PhaseTracking {
         for passage in (0..repeats).flat_map(|_| passages) {
             let least = passage.instants.iter().map(|i| energy(i.sigma)).fold(f64::INFINITY, f64::min);
             most = most.min(least / factor);
-            factor *= energy(passage.beginning().sigma) / energy(passage.end().sigma);
+            factor *= energy(passage.beginning().sigma) / energy(passage.last().sigma);
         }
         let entry = passages.first().map_or(0.0, |p| energy(p.beginning().sigma));
         PhaseTracking::Map {

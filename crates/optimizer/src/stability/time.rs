@@ -1,7 +1,7 @@
 //! Joints that follow functions of time.
 //!
 //! At the clock's time of a landing, the state of the robot deviates from the gait's by (δβ, δσ). That is all: the joints are
-//! where the clock wants them. The half step carries the deviation linearly. At its end the swing foot meets the ground
+//! where the clock wants them. A phase carries the deviation linearly. At its end the swing foot meets the ground
 //!
 //! ```text
 //! δt = −(∂h/∂β) δβ / ḣ
@@ -14,10 +14,14 @@
 //! ```text
 //! f1 δβ⁺ = ∂σ/∂q̇ · e
 //! ```
+//!
+//! A foot leaves when the clock says so: until then it is loaded, and then the references lift it. In flight σ is that about the mass
+//! centre, and what else deviates is the mass centre's parabola: its height, and its velocity. Landing, h has the
+//! height's deviation too, and the impact that of the velocity. How far forward it is does not matter.
 
 use super::halving;
-use super::passage::{Passage, with_next_names};
-use piaffe_model::Gait;
+use super::passage::{Crossing, Passage, with_next_names};
+use piaffe_model::{Gait, Mode, UP};
 use piaffe_sqp::dot;
 use serde::{Deserialize, Serialize};
 
@@ -42,49 +46,74 @@ pub struct TimeTracking {
 }
 
 impl TimeTracking {
-    /// From the half steps that define the gait, of which a step is `repeats` rounds.
+    /// From the phases that define the gait, of which a step is `repeats` rounds.
     pub fn new(gait: &dyn Gait, passages: &[Passage], repeats: usize, clock: Clock) -> TimeTracking {
-        let mut step = [[1.0, 0.0], [0.0, 1.0]];
-        for passage in (0..repeats).flat_map(|_| passages) {
-            step = product(&half_step_map(gait, passage, clock), &step);
-        }
+        // On the ground nothing but (β, σ) deviates; eigenvalues do not depend on where in the step one looks.
+        let first = passages.iter().position(|passage| passage.mode != Mode::Flight).unwrap_or_default();
+        let step = passages.iter().cycle().skip(first).take(repeats * passages.len());
+        let carried =
+            |start: Deviation| step.clone().fold(start, |deviation, passage| carry(gait, passage, deviation, clock));
+        let by_beta = carried(Deviation { beta: 1.0, ..Deviation::default() });
+        let by_sigma = carried(Deviation { sigma: 1.0, ..Deviation::default() });
+        let step = [[by_beta.beta, by_sigma.beta], [by_beta.sigma, by_sigma.sigma]];
         let eigenvalues = eigenvalues(&step);
         let factor = eigenvalues.iter().map(|[re, im]| re.hypot(*im)).fold(0.0, f64::max);
         TimeTracking { eigenvalues, factor, steps_to_halve: halving(factor) }
     }
 }
 
-/// What becomes of (δβ, δσ) from just after a landing to just after the next: rows β, σ.
-pub fn half_step_map(gait: &dyn Gait, passage: &Passage, clock: Clock) -> [[f64; 2]; 2] {
-    let columns = [0, 1].map(|column| {
-        let [beta, sigma] = [0, 1].map(|row| passage.flow[row][column]);
-        across_landing(gait, passage, beta, sigma, clock)
-    });
-    [0, 1].map(|row| [columns[0][row], columns[1][row]])
+/// From the gait, at the same time of the clock.
+#[derive(Clone, Copy, Debug, Default)]
+struct Deviation {
+    beta: f64,
+    sigma: f64,
+    /// Of the mass centre in flight: its height, m, and its velocity, forward and up, m/s.
+    height: f64,
+    velocity: [f64; 2],
 }
 
-/// Takes (δβ, δσ) at the end of a half step across the landing.
-fn across_landing(gait: &dyn Gait, passage: &Passage, beta: f64, sigma: f64, clock: Clock) -> [f64; 2] {
-    let (landing, next) = (&passage.landing, &passage.next);
-    let unactuated = gait.description().unactuated;
-    let late = -landing.height[unactuated] * beta / landing.speed();
-    let mut q: Vec<f64> = landing.state.qd.iter().map(|rate| rate * late).collect();
-    let mut qd: Vec<f64> = landing.state.qdd.iter().map(|acceleration| acceleration * late).collect();
-    q[unactuated] += beta;
-    qd[unactuated] += landing.betad[0] * beta + landing.betad[1] * sigma;
+/// What becomes of a deviation from just after a transition to just after the next.
+fn carry(gait: &dyn Gait, passage: &Passage, start: Deviation, clock: Clock) -> Deviation {
+    let [beta, sigma] = passage.flow.map(|[by_beta, by_sigma]| by_beta * start.beta + by_sigma * start.sigma);
+    let height = start.height + passage.duration * start.velocity[UP];
+    across(gait, passage, Deviation { beta, sigma, height, ..start }, clock)
+}
 
-    let qd = with_next_names(gait.description(), passage.index, &landing.impact(&q, &qd));
-    let q = with_next_names(gait.description(), passage.index, &q);
+/// Takes a deviation at the end of a phase across the transition.
+fn across(gait: &dyn Gait, passage: &Passage, at: Deviation, clock: Clock) -> Deviation {
+    let (d, end, next) = (gait.description(), &passage.end, &passage.next);
+    let late = match &passage.crossing {
+        Crossing::Lands { height, speed, .. } => -(height[d.unactuated] * at.beta + at.height) / speed,
+        Crossing::Leaves { .. } => 0.0,
+    };
+    let mut q: Vec<f64> = end.state.qd.iter().map(|rate| rate * late).collect();
+    let mut qd: Vec<f64> = end.state.qdd.iter().map(|acceleration| acceleration * late).collect();
+    q[d.unactuated] += at.beta;
+    qd[d.unactuated] += end.betad[0] * at.beta + end.betad[1] * at.sigma;
+    let [forward, up] = at.velocity;
+
+    let mut after = Deviation::default();
+    let qd = match &passage.crossing {
+        Crossing::Lands { impact, .. } => {
+            let before = match passage.mode {
+                Mode::Flight => [&q[..], &[forward, up - d.gravity * late], &qd].concat(),
+                Mode::Stance(_) => [&q[..], &qd].concat(),
+            };
+            impact.chunks(before.len()).map(|row| dot(row, &before)).collect()
+        }
+        Crossing::Leaves { height, velocity } => {
+            after.height = dot(height, &q);
+            after.velocity = velocity.each_ref().map(|row| dot(row, &[&q[..], &qd].concat()));
+            qd
+        }
+    };
+    let (q, qd) = (with_next_names(d, passage.index, &q), with_next_names(d, passage.index, &qd));
     // By how much the next references are ahead when they begin.
     let ahead = if clock == Clock::RunsOn { late } else { 0.0 };
     let deviation: Vec<f64> = q.iter().zip(&next.qd).map(|(q, rate)| q - rate * ahead).collect();
-    let beta = dot(&next.by_qd, &deviation) / next.by_qd[unactuated];
-    let sigma = dot(&next.by_q, &q) + dot(&next.by_qd, &qd) - next.sigmad * ahead;
-    [beta, sigma]
-}
-
-fn product(a: &[[f64; 2]; 2], b: &[[f64; 2]; 2]) -> [[f64; 2]; 2] {
-    a.map(|row| [0, 1].map(|column| row[0] * b[0][column] + row[1] * b[1][column]))
+    after.beta = dot(&next.by_qd, &deviation) / next.by_qd[d.unactuated];
+    after.sigma = dot(&next.by_q, &q) + dot(&next.by_qd, &qd) - next.sigmad * ahead;
+    after
 }
 
 /// Real and imaginary parts of a matrix's eigenvalues, the larger modulus first.

@@ -21,6 +21,9 @@ impl fmt::Display for PhaseTracking {
                 "not possible for all joints at once: the momentum about the stance foot vanishes in half step {half_step} at {time:.3} s"
             ),
             PhaseTracking::NoPhase => write!(f, "not possible: no quantity of the posture grows all the time"),
+            PhaseTracking::Flight => {
+                write!(f, "not possible: in flight the mass centre falls, however fast the posture changes")
+            }
         }
     }
 }
