@@ -33,10 +33,8 @@ impl Cycle<'_> {
     /// Calls `visit(node, constraint, multiplier)` for every path row of phase `k` with a multiplier.
     pub(super) fn weighted_path_rows(&self, k: usize, mu: &[f64], mut visit: impl FnMut(usize, &PathConstraint, f64)) {
         let range = self.rows.of(k).path.clone();
-        for (row, multiplier) in self.rows.inequalities[range.clone()].iter().zip(&mu[range]) {
-            if let Row::Path { node, constraint, .. } = *row
-                && *multiplier != 0.0
-            {
+        for (row, multiplier) in range.clone().zip(&mu[range]).filter(|(_, multiplier)| **multiplier != 0.0) {
+            if let Row::Path { node, constraint, .. } = self.rows.inequalities[row] {
                 visit(node, &self.phases[k].path[constraint], *multiplier);
             }
         }

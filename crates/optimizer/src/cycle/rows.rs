@@ -79,12 +79,15 @@ impl Rows {
             add(*equation);
         }
 
-        let mut inequalities = Vec::new();
+        let most = phases.iter().map(|p| p.mesh.nodes.len() * p.path.len() + p.dips.len());
+        let mut inequalities = Vec::with_capacity(most.sum());
         for (k, (rows, p)) in of_phase.iter_mut().zip(phases).enumerate() {
             let first = inequalities.len();
-            for node in 0..p.mesh.nodes.len() {
-                let imposed = p.path.iter().enumerate().filter(|(_, c)| node > 0 || c.at_start);
-                inequalities.extend(imposed.map(|(constraint, _)| Row::Path { phase: k, node, constraint }));
+            let row = |node: usize, constraint: usize| Row::Path { phase: k, node, constraint };
+            let at_start = (0..p.path.len()).filter(|constraint| p.path[*constraint].at_start);
+            inequalities.extend(at_start.map(|constraint| row(0, constraint)));
+            for node in 1..p.mesh.nodes.len() {
+                inequalities.extend((0..p.path.len()).map(|constraint| row(node, constraint)));
             }
             rows.path = first..inequalities.len();
         }

@@ -7,17 +7,20 @@ impl Layout {
     /// Q, Q̇ and Q̈ (eq. 15) of prescribed coordinate `k`, and the derivatives of each in T.
     pub(super) fn coordinate(&self, k: usize, jet: &Jet, parameters: &[f64]) -> ([f64; 3], [f64; 3]) {
         let t = parameters[self.duration()];
-        let (per_t, last) = (1.0 / t, self.per_joint - 1);
+        let per_t = 1.0 / t;
         let own = &parameters[self.joint(k, 0)..][..self.per_joint];
-        // The values among the parameters, and the two rates, which are given times T.
-        let of = |jet: &[f64]| {
-            let values = jet[2..last].iter().zip(&own[2..last]).fold(jet[0] * own[0], |sum, (b, p)| sum + b * p);
-            (values, jet[1] * own[1] + jet[last] * own[last])
-        };
-        let ((v, rv), (d, rd), (dd, rdd)) = (of(&jet.value), of(&jet.first), of(&jet.second));
+        let ((v, rv), (d, rd), (dd, rdd)) = (sums(&jet.value, own), sums(&jet.first, own), sums(&jet.second, own));
         let by_duration = [rv, -d * per_t * per_t, -(2.0 * dd * per_t + rdd) * per_t * per_t];
         ([v + t * rv, d * per_t + rd, (dd * per_t + rdd) * per_t], by_duration)
     }
+}
+
+/// What the values among the parameters add up to, and what the two rates, which are given times T.
+#[inline(always)]
+fn sums(basis: &[f64], own: &[f64]) -> (f64, f64) {
+    let last = own.len() - 1;
+    let values = basis[2..last].iter().zip(&own[2..last]).fold(basis[0] * own[0], |sum, (b, p)| sum + b * p);
+    (values, basis[1] * own[1] + basis[last] * own[last])
 }
 
 /// The prescribed coordinates at some instants, a row per instant: Q, Q̇, Q̈ (eq. 15) and the derivatives of each in T.

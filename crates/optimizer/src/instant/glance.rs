@@ -1,6 +1,6 @@
 //! A look at an instant between the nodes.
 
-use super::{Quantities, durations};
+use super::Quantities;
 use crate::flow::{Fall, Flow, Layout, Mesh, State, Undefined};
 use crate::swing::{Swing, swings};
 use piaffe_model::shape::ModeShapes;
@@ -12,6 +12,8 @@ pub struct Glance {
     quantities: Quantities,
     mode: Mode,
     swings: Vec<Swing>,
+    /// The durations that they depend on, s.
+    durations: Vec<f64>,
     shapes: &'static ModeShapes,
     pub state: State,
     pub qdd: Vec<f64>,
@@ -37,6 +39,7 @@ impl Glance {
             quantities,
             mode,
             swings: swings(d, k),
+            durations: Vec::with_capacity(d.phases.len()),
             shapes,
             state: State::new(d, mode),
             qdd: vec![0.0; d.orientations()],
@@ -86,9 +89,10 @@ impl Glance {
             }
         }
         y.write(&mut self.values, [q, qd], [torques, force], self.platform[UP]);
-        let durations = durations(layout, parameters);
+        self.durations.clear();
+        self.durations.extend(layout.durations().map(|at| parameters[at]));
         for (foot, swing) in self.swings.iter().enumerate() {
-            self.values[y.clearance(foot)] = self.feet[foot * components + UP] * swing.factor(&durations, s).value;
+            self.values[y.clearance(foot)] = self.feet[foot * components + UP] * swing.factor(&self.durations, s).value;
         }
         let heights = &mut self.values[y.heights()];
         heights.copy_from_slice(shapes.heights.heights.of(&self.heights));

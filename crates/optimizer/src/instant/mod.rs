@@ -12,11 +12,10 @@ pub use glance::Glance;
 pub use quantities::{Quantities, Shared};
 
 use crate::flow::{Fall, Flow, Layout, Mesh, basis_derivatives};
-use crate::swing::{Factor, Of, Swing, swings};
+use crate::swing::{ByDurations, Factor, Of, Swing, swings};
 use chain::{Chain, parts};
 use piaffe_model::shape::{ModeShapes, Takeoff};
 use piaffe_model::{Description, FORWARD, Gait, Mode, UP};
-use smallvec::SmallVec;
 
 /// The quantities at all nodes of a phase: values, and derivatives of the last linearization.
 #[derive(Clone, Debug)]
@@ -25,6 +24,8 @@ pub struct Instants {
     mode: Mode,
     /// Of the feet in the air, in the order in which kernels give them.
     pub swings: Vec<Swing>,
+    /// The durations that they depend on, s.
+    durations: Vec<f64>,
     shapes: &'static ModeShapes,
     takeoff_shape: Takeoff,
     layout: Layout,
@@ -52,11 +53,6 @@ pub struct Instants {
     pub basis: Vec<[f64; 3]>,
 }
 
-/// The durations that swings depend on, s: see [`Swing::factor`].
-pub fn durations(layout: &Layout, parameters: &[f64]) -> SmallVec<[f64; 4]> {
-    layout.durations().map(|at| parameters[at]).collect()
-}
-
 impl Instants {
     /// Of phase `k` of a gait.
     pub fn new(d: &Description, mesh: &Mesh, k: usize) -> Instants {
@@ -72,6 +68,7 @@ impl Instants {
             quantities,
             mode,
             swings,
+            durations: vec![0.0; layout.durations().count()],
             shapes,
             takeoff: takeoff_shape.zeros(),
             takeoff_shape,
@@ -165,8 +162,13 @@ impl Instants {
     }
 
     /// What a foot's clearance at a node is made of.
-    pub fn factor(&self, mesh: &Mesh, parameters: &[f64], node: usize, foot: usize) -> Factor {
-        self.swings[foot].factor(&durations(&self.layout, parameters), mesh.nodes[node].0)
+    pub fn factor(&self, mesh: &Mesh, node: usize, foot: usize) -> Factor {
+        self.swings[foot].factor(&self.durations, mesh.nodes[node].0)
+    }
+
+    /// How that factor depends on the durations of phases, if it does.
+    pub fn by_durations(&self, mesh: &Mesh, node: usize, foot: usize) -> Option<ByDurations> {
+        self.swings[foot].by_durations(&self.durations, mesh.nodes[node].0)
     }
 
     /// Gradient of what a foot's clearance at a node is made of, in (q, q̇, q̈) or the first of them, as far as the state decides.
@@ -189,7 +191,7 @@ impl Instants {
         let last = mesh.nodes.len() - 1;
         let y = self.quantities;
         let fall = Fall::new(&self.layout, self.gravity, parameters);
-        let durations = durations(&self.layout, parameters);
+        self.durations.iter_mut().zip(self.layout.durations()).for_each(|(t, at)| *t = parameters[at]);
         let inverse_rows = self.inverse.chunks_mut(s.inverse_jacobian.len);
         let placement_rows = self.placement.chunks_mut(s.placement.len);
         let value_rows = self.values.chunks_mut(y.len());
@@ -218,7 +220,7 @@ impl Instants {
             }
             for (foot, swing) in self.swings.iter().enumerate() {
                 let up = foot * self.components + UP;
-                let factor = swing.factor(&durations, share);
+                let factor = swing.factor(&self.durations, share);
                 let made_of = match factor.of {
                     Of::Height => s.placement.swing.of(placement)[up] + fallen,
                     Of::Velocity => {
@@ -292,7 +294,7 @@ impl Instants {
                 chain.row(parts(row, nq), Some(betadd_p), out);
             }
             for foot in 0..y.feet() {
-                let factor = self.factor(mesh, parameters, k, foot);
+                let factor = self.factor(mesh, k, foot);
                 let clearance = self.values[k * y.len() + y.clearance(foot)];
                 let out = &mut block[y.clearance(foot) * np..][..np];
                 let row = self.of_foot(mesh, k, foot, factor.of);
@@ -307,8 +309,10 @@ impl Instants {
                     _ => {}
                 }
                 out.iter_mut().for_each(|x| *x *= factor.value);
-                for (at, by) in self.layout.durations().zip(&factor.by) {
-                    out[at] += clearance / factor.value * by;
+                if let Some(by) = self.by_durations(mesh, k, foot) {
+                    for (at, by) in self.layout.durations().zip(&by.first) {
+                        out[at] += clearance / factor.value * by;
+                    }
                 }
             }
         }

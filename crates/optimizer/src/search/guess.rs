@@ -32,7 +32,7 @@ impl Plan {
     pub fn default_for(d: &Description) -> Plan {
         Plan {
             height: 0.85,
-            durations: (0..d.phases.len()).map(|k| duration(d, k, typical(d, k, 0.438))).collect(),
+            durations: (0..d.phases.len()).map(|k| duration(d, k, typical(d, k).moderate)).collect(),
             clearance: 1.0 / 15.0,
             lead: 0.0,
             posture: vec![0.5; joints_per_leg(d)],
@@ -44,7 +44,8 @@ impl Plan {
     pub fn random(gait: &dyn Gait, rng: &mut fastrand::Rng) -> Plan {
         let d = gait.description();
         let mut within = |lo: f64, hi: f64| lo + (hi - lo) * rng.f64();
-        let durations = (0..d.phases.len()).map(|k| duration(d, k, typical(d, k, within(0.0, 1.0)))).collect();
+        let mut drawn = |Typical { short, long, .. }: Typical| within(short, long);
+        let durations = (0..d.phases.len()).map(|k| duration(d, k, drawn(typical(d, k)))).collect();
         let (clearance, lead) = (within(2.0 / 75.0, 2.0 / 15.0), within(-0.3, 0.3));
         let posture = (0..joints_per_leg(d)).map(|_| within(0.1, 0.9)).collect();
         let pitch = within(-0.5, 0.5);
@@ -54,14 +55,20 @@ impl Plan {
     }
 }
 
-/// A duration in the robot's unit of time, from short (0) to long (1).
-fn typical(d: &Description, k: usize, share: f64) -> f64 {
-    let [short, long] = match d.phases[k].mode {
-        Mode::Stance(_) => [0.457, 2.29],
+/// Durations in the robot's unit of time.
+struct Typical {
+    short: f64,
+    moderate: f64,
+    long: f64,
+}
+
+/// Of phase `k`.
+fn typical(d: &Description, k: usize) -> Typical {
+    match d.phases[k].mode {
+        Mode::Stance(_) => Typical { short: 0.457, moderate: 1.26, long: 2.29 },
         // A mass that is thrown up a third of the leg is back after 1.6.
-        Mode::Flight => [0.15, 1.2],
-    };
-    short + (long - short) * share
+        Mode::Flight => Typical { short: 0.15, moderate: 0.61, long: 1.2 },
+    }
 }
 
 fn joints_per_leg(d: &Description) -> usize {

@@ -238,32 +238,35 @@ impl PhaseWork {
     fn by_durations(&mut self, d: &Description, p: &Phase, node: usize, h: &mut [f64]) {
         let (np, y, layout) = (p.layout.len(), p.instants.quantities, p.layout);
         let w = &self.weights[node * y.len()..][..y.len()];
-        let durations: smallvec::SmallVec<[usize; 4]> = layout.durations().collect();
-        let mut height: f64 = w[y.height()] + w[y.heights()].iter().sum::<f64>();
         for foot in 0..y.feet() {
+            let Some(by) = p.instants.by_durations(&p.mesh, node, foot) else { continue };
             let (factor, weight) = self.of_clearance(p, node, foot);
-            if factor.of == Of::Height {
-                height += weight * factor.value;
-            }
-            if weight == 0.0 || factor.by.is_empty() {
+            if weight == 0.0 {
                 continue;
             }
             // The clearance is factor · made_of.
             let made_of = p.linearized(node)[y.clearance(foot)] / factor.value;
             self.scratch.copy_from_slice(p.instants.gradient(node, y.clearance(foot)));
-            for (at, by) in durations.iter().zip(&factor.by) {
-                self.scratch[*at] -= made_of * by;
+            for (at, by) in layout.durations().zip(&by.first) {
+                self.scratch[at] -= made_of * by;
             }
-            for (at, by) in durations.iter().zip(&factor.by) {
-                cross_duration(h, &self.scratch, weight * by / factor.value, *at);
+            for (at, by) in layout.durations().zip(&by.first) {
+                cross_duration(h, &self.scratch, weight * by / factor.value, at);
             }
-            for (i, row) in durations.iter().enumerate() {
-                for (j, column) in durations.iter().enumerate() {
-                    h[row * np + column] += 0.5 * weight * made_of * factor.second[i * durations.len() + j];
+            for (row, second) in layout.durations().zip(by.second.chunks(by.first.len())) {
+                for (column, second) in layout.durations().zip(second) {
+                    h[row * np + column] += 0.5 * weight * made_of * second;
                 }
             }
         }
         let Some(fall) = p.fall(d) else { return };
+        let mut height = w[y.height()] + w[y.heights()].iter().sum::<f64>();
+        for foot in 0..y.feet() {
+            let (factor, weight) = self.of_clearance(p, node, foot);
+            if factor.of == Of::Height {
+                height += weight * factor.value;
+            }
+        }
         if node == p.last() {
             height += self.landing;
         }

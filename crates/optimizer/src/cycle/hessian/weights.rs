@@ -71,7 +71,7 @@ impl PhaseWork {
     /// What the clearance of a foot at a node is made of, and the clearance's weight.
     pub(super) fn of_clearance(&self, p: &Phase, node: usize, foot: usize) -> (Factor, f64) {
         let y = p.instants.quantities;
-        let factor = p.instants.factor(&p.mesh, &p.parameters, node, foot);
+        let factor = p.instants.factor(&p.mesh, node, foot);
         (factor, self.weights[node * y.len() + y.clearance(foot)])
     }
 
