@@ -46,12 +46,12 @@ fn a_given_number_of_starts_is_kept_to_and_threads_do_not_matter() {
     assert_eq!((one.effort, costs(&one)), (many.effort, costs(&many)));
 }
 
-/// The optimum that few starts reach is among those that a search of the A1's bound ends with.
+/// The optimum that few starts reach is among those that a search of a slow curvet ends with; more lead to 964.1.
 #[test]
 fn optima_that_few_starts_reach_are_found() {
-    let found = searched("a1/bound", 0.6, &Settings::default());
+    let found = searched("curvet", 0.2, &Settings::default());
     let best = &found.optima[0];
-    assert!(best.local.costs.torque < 500.0, "{} {:?}", best.local.costs.torque, found.effort);
+    assert!(best.local.costs.torque < 960.0, "{} {:?}", best.local.costs.torque, found.effort);
     assert!(
         2 * best.reached < found.effort.successes && found.effort.starts > 40,
         "{} {:?}",
