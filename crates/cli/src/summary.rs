@@ -1,8 +1,8 @@
 //! A result for a person.
 
 use super::digits::decimal;
-use piaffe_model::Description;
 use piaffe_model::motion::Criterion;
+use piaffe_model::{Description, Mode};
 use piaffe_optimizer::result::{GaitResult, NotExamined, Status};
 use piaffe_optimizer::search::evidence::Effort;
 use piaffe_optimizer::sensitivity::Sensitivity;
@@ -28,6 +28,9 @@ fn standing(c: &Certificate) -> String {
     let open = c.cycle_error.is_none_or(|error| error > c.tolerance).then(|| "cycle not proven to close".to_string());
     format!("sampled: {}", gaps.chain(open).collect::<Vec<_>>().join("\n                  "))
 }
+
+/// A duration that is longer than the shortest by less than this share is as short as is allowed.
+const SHORTEST: f64 = 1e-6;
 
 /// How sure it is that there is nothing better.
 fn confidence(r: &GaitResult) -> String {
@@ -79,6 +82,14 @@ pub fn print(description: &Description, r: &GaitResult) -> std::io::Result<()> {
     if let Some(step) = r.step_length {
         let durations: Vec<String> = r.durations.iter().map(|t| format!("{} s", decimal(*t, 4))).collect();
         writeln!(out, "  half steps      {}", durations.join(" + "))?;
+        let flights = description.phases.iter().zip(&r.durations).filter(|(phase, _)| phase.mode == Mode::Flight);
+        if let Some((phase, _)) = flights.into_iter().find(|(phase, t)| **t <= phase.duration[0] * (1.0 + SHORTEST)) {
+            writeln!(
+                out,
+                "  flight          as short as is allowed ({} s): a walk in disguise, which the gait without flight may do for less",
+                phase.duration[0]
+            )?;
+        }
         writeln!(out, "  step length     {} m", decimal(step, 4))?;
     }
     if !r.peaks.is_empty() {

@@ -93,9 +93,7 @@ pub fn evaluate(
                 tally.note(swing.constraint, room(above, per_height) / units.leg, t[lane]);
             }
         }
-        for lane in 0..count {
-            platform[first + lane] = state.platform.x.0[lane];
-        }
+        platform[first..first + count].copy_from_slice(&state.platform.x.0[..count]);
     }
     if let Some(leg) = description.transition(index).lands() {
         let landing = state.feet[leg].y.0[last % LANES];
