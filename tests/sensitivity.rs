@@ -10,6 +10,9 @@ use piaffe::search::multi_start::{Settings, search};
 use piaffe::sensitivity::{Sensitivities, sensitivities};
 use piaffe::sqp::Control;
 
+#[path = "flight/gaits.rs"]
+mod flying;
+
 const SPEED: f64 = 0.6;
 
 fn optimum(gait: &dyn Gait, criterion: Criterion) -> Local {
@@ -61,6 +64,20 @@ fn elasticities_add_up_to_the_dimension_of_the_criterion() {
             // Multipliers are those of the optimizer's mesh.
             assert!((sum - expected).abs() < 1e-4, "{} {criterion:?} {k}: {sum}", gait.description().key);
         }
+    }
+}
+
+/// Through take-off, parabola and landing too, and through swings that last longer than a phase.
+#[test]
+fn elasticities_of_gaits_that_fly_add_up_too() {
+    for (gait, motion) in flying::optima() {
+        let found = sensitivities(&gait, Criterion::Torque, 1.0, &motion).unwrap();
+        for (k, expected) in dimension(Criterion::Torque.unit()).into_iter().enumerate() {
+            let sum: f64 = found.slopes.iter().map(|s| s.elasticity * dimension(&s.unit)[k]).sum();
+            assert!((sum - expected).abs() < 1e-4, "{} {k}: {sum}", gait.description().key);
+        }
+        // How long the mass centre falls decides of a run: gravity has a price of its own.
+        assert!(slope(&found, "gravity").abs() > 1.0, "{}", gait.description().key);
     }
 }
 

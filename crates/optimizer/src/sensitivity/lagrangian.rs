@@ -1,8 +1,8 @@
 //! ∂L/∂p with Θ and the multipliers kept: L = f − λᵀc_E − μᵀc_I − νᵀ(Θ − bounds), every function of it as the nonlinear program has it.
 //! f is the criterion per metre but for a factor, which the speed is part of and no other number.
 //!
-//! Numbers of the robot change the impacts, with them the velocities and the momentum at the beginning of each half step, and β
-//! along it. The end of a half step is part of Θ. A row of L at a dip between nodes is the quartic through the nodes, as in the
+//! Numbers of the robot change the impacts, with them the velocities and the momentum at the beginning of each phase, the parabola of a
+//! flight, and β along it. The end of a phase is part of Θ. A row of L at a dip between nodes is the quartic through the nodes, as in the
 //! program; the dip's motion does not matter (envelope theorem). Joints at rest do not stay so when numbers change: the criterion's
 //! subgradient there is part of L.
 
@@ -13,8 +13,9 @@ use crate::optimality::Linearized;
 use crate::swing::{Of, Swing, swings};
 use num_traits::Zero;
 use piaffe_model::motion::{HalfStep, Motion};
-use piaffe_model::{Description, Lever, Mode};
+use piaffe_model::{Description, Lever, Mode, UP};
 use piaffe_number::{Dual, Scalar};
+use piaffe_verify::contact::Contact;
 use piaffe_verify::impact::{Before, Impact, impact_of};
 use piaffe_verify::instants::State;
 use piaffe_verify::multibody::Multibody;
@@ -33,10 +34,27 @@ pub struct Slopes<'a> {
     d: &'a Description,
 }
 
-/// What happens at the end of a half step.
+/// How a phase ends.
+enum End {
+    Lands(Box<Landing>),
+    /// All velocities stay: these of q.
+    Leaves(Vec<Number>),
+}
+
+impl End {
+    /// Velocities of q with which it ends.
+    fn rates(&self, d: &Description) -> &[Number] {
+        match self {
+            End::Lands(landing) => &landing.impact.after[d.positions()..],
+            End::Leaves(rates) => rates,
+        }
+    }
+}
+
+/// What happens where a foot lands.
 struct Landing {
     impact: Impact<Number>,
-    /// Of the foot that lands, over the stance foot.
+    /// Of the foot that lands, over the stance foot or, out of flight, the ground.
     height: Number,
 }
 
@@ -70,22 +88,23 @@ impl<'a> Slopes<'a> {
         let numbers = Numbers::of(d, numbers);
         let limits =
             Limits::along(d, &std::array::from_fn(|lane| d.direction(levers.get(lane).map_or(&[], |l| l.slopes))));
-        let landings = (0..d.phases.len()).map(|k| self.landing(&numbers, k)).collect::<Option<Vec<_>>>()?;
+        let ends = (0..d.phases.len()).map(|k| self.end(&numbers, k)).collect::<Option<Vec<_>>>()?;
 
         let units = self.linearized.cycle.units();
         let mut lagrangian = Number::zero();
         let mut travel = Number::zero();
-        for (k, landing) in landings.iter().enumerate() {
+        for (k, end) in ends.iter().enumerate() {
             let before = (k + d.phases.len() - 1) % d.phases.len();
-            let impact = ImpactConstraints::with(d, d.transition(k), limits.friction)?;
-            lagrangian += self.half_step(&numbers, &limits, k, &landings[before].impact, &mut travel)?;
-            lagrangian -= landing.height.scale(self.multiplier(Equation::Touchdown(k)) / units.length);
-            let end = [&landing.impact.impulse.as_slice()[..d.positions()], &[landing.impact.leaving.y]].concat();
-            for (i, multiplier) in self.priced() {
-                if let Place::Impact { phase, constraint } = self.linearized.cycle.place(i)
-                    && phase == k
-                {
-                    lagrangian -= impact.value(constraint, &end).scale(multiplier);
+            lagrangian += self.half_step(&numbers, &limits, k, ends[before].rates(d), &mut travel)?;
+            if let (End::Lands(landing), Some(impact)) = (end, ImpactConstraints::with(d, d.transition(k), limits.friction)) {
+                lagrangian -= landing.height.scale(self.multiplier(Equation::Touchdown(k)) / units.length);
+                let end = [&landing.impact.impulse.as_slice()[..d.positions()], &[landing.impact.leaving.y]].concat();
+                for (i, multiplier) in self.priced() {
+                    if let Place::Impact { phase, constraint } = self.linearized.cycle.place(i)
+                        && phase == k
+                    {
+                        lagrangian -= impact.value(constraint, &end).scale(multiplier);
+                    }
                 }
             }
             let bounds = self.motion.half_steps.len();
@@ -116,32 +135,45 @@ impl<'a> Slopes<'a> {
             .filter(|(_, multiplier)| *multiplier != 0.0)
     }
 
-    /// The landing that ends half step `k`, where Θ has it.
-    fn landing(&self, numbers: &Numbers<Number>, k: usize) -> Option<Landing> {
+    /// All phases, where Θ has them.
+    fn phases(&self) -> Vec<HalfStep<Number>> {
+        self.motion.half_steps.iter().map(HalfStep::cast).collect()
+    }
+
+    /// How phase `k` ends, where Θ has it.
+    fn end(&self, numbers: &Numbers<Number>, k: usize) -> Option<End> {
         let (d, h) = (self.d, &self.motion.half_steps[k]);
-        let stance = self.linearized.cycle.mode(k).stance()?;
-        let landing = 1 - stance;
         let constants = |values: Vec<f64>| -> Vec<Number> { values.into_iter().map(Number::constant).collect() };
         let q = constants(d.complete(&h.q_final, h.beta_final));
         let qd = constants(d.complete(&h.qd_final, h.betad_final));
+        let Some(landing) = d.transition(k).lands() else { return Some(End::Leaves(qd)) };
         let mut multibody = Multibody::with(d, numbers.clone());
-        let impact = impact_of(&mut multibody, landing, &q, &qd, Before::Stance)?;
-        let height = multibody.foot(landing).position.y - multibody.foot(stance).position.y;
-        Some(Landing { impact, height })
+        let contact = Contact::of(d, numbers, &self.phases(), k);
+        let t = Number::constant(h.duration);
+        let before = match contact {
+            Contact::Foot(_) => Before::Stance,
+            Contact::Flight(fall) => Before::Flight(fall.velocity(t)),
+        };
+        let impact = impact_of(&mut multibody, landing, &q, &qd, before)?;
+        let foot = multibody.foot(landing).position.y;
+        let height = match contact {
+            Contact::Foot(stance) => foot - multibody.foot(stance).position.y,
+            Contact::Flight(fall) => fall.place(t)[UP] + foot - multibody.centre().position.y,
+        };
+        Some(End::Lands(Box::new(Landing { impact, height })))
     }
 
-    /// Its part of L, but for its landing; adds to the travel.
+    /// Its part of L, but for how it ends; `rates` are those with which the phase before ends. Adds to the travel.
     fn half_step(
         &self,
         numbers: &Numbers<Number>,
         limits: &Limits<Number>,
         k: usize,
-        impact: &Impact<Number>,
+        rates: &[Number],
         travel: &mut Number,
     ) -> Option<Number> {
         let (d, cycle, m) = (self.d, &self.linearized.cycle, &self.linearized.multipliers);
         let mut half_step: HalfStep<Number> = self.motion.half_steps[k].cast();
-        let rates = &impact.after[d.positions()..];
         let rate = |index: usize| {
             let (from, sign) = d.renamed((k + d.phases.len() - 1) % d.phases.len(), index);
             rates[from].scale(sign)
@@ -150,7 +182,7 @@ impl<'a> Slopes<'a> {
         half_step.betad_initial = rate(d.unactuated);
         let duration = self.motion.half_steps[k].duration;
         let (mode, swings) = (cycle.mode(k), swings(d, k));
-        let mut phase = Phase::with(d, numbers.clone(), &half_step, mode.stance()?, k + 1).ok()?;
+        let mut phase = Phase::with(d, numbers.clone(), &half_step, Contact::of(d, numbers, &self.phases(), k), k + 1).ok()?;
 
         // β and σ at the end: these numbers change σ(q, q̇) of the wanted end and of the motion's alike.
         let [beta, betad] = phase.beta_end();
@@ -177,12 +209,13 @@ impl<'a> Slopes<'a> {
                     .for_each(|(node, part)| rows[node].push((constraint, multiplier * part)));
             }
         }
+        let durations: Vec<f64> = self.motion.half_steps.iter().map(|h| h.duration).collect();
         let constraints = path_constraints_of(d, limits, k);
         let mut state = State::new(d);
         for (node, (weights, rows)) in weights.iter().zip(&rows).enumerate() {
             let share = cycle.instant(k, node);
             phase.at(share * duration, &mut state).ok()?;
-            let y = quantities(d, mode, &swings, &state, share, duration);
+            let y = quantities(d, mode, &swings, &state, share, &durations);
             for (quantity, weight) in weights {
                 lagrangian += y[*quantity].scale(*weight);
             }
@@ -219,12 +252,12 @@ fn quantities(
     swings: &[Swing],
     state: &State<Number>,
     share: f64,
-    duration: f64,
+    durations: &[f64],
 ) -> Vec<Number> {
     let (y, joints) = (Quantities::new(d, mode), d.joints());
     let mut values = vec![Number::zero(); y.len()];
     values[..joints].copy_from_slice(&state.torques);
-    values[y.force(0)..][..d.positions()].copy_from_slice(&state.force.as_slice()[..d.positions()]);
+    values[y.force(0)..][..y.components()].copy_from_slice(&state.force.as_slice()[..y.components()]);
     values[y.angle(0)..][..joints].copy_from_slice(&state.q[..joints]);
     values[y.rate(0)..][..joints].copy_from_slice(&state.qd[..joints]);
     values[y.height()] = state.platform.y;
@@ -232,9 +265,12 @@ fn quantities(
         *value = state.heights[*point];
     }
     for (foot, swing) in swings.iter().enumerate() {
-        let factor = swing.factor(&[duration], share);
-        let made_of =
-            if factor.of == Of::Velocity { state.feet_velocity[swing.leg].y } else { state.feet[swing.leg].y };
+        let factor = swing.factor(durations, share);
+        let made_of = match factor.of {
+            Of::Height => state.feet[swing.leg].y,
+            Of::Velocity => state.feet_velocity[swing.leg].y,
+            Of::Acceleration => state.feet_acceleration[swing.leg],
+        };
         values[y.clearance(foot)] = made_of.scale(factor.value);
     }
     values

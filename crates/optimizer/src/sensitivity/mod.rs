@@ -10,7 +10,7 @@ use crate::constraints::sharing::applies;
 use crate::optimality::{KKT_RESIDUAL, Linearized};
 use lagrangian::{LANES, Slopes};
 use piaffe_model::motion::{Criterion, Motion};
-use piaffe_model::{Gait, Mode};
+use piaffe_model::Gait;
 use serde::{Deserialize, Serialize};
 
 /// Slopes of the least criterion.
@@ -56,8 +56,6 @@ pub enum Unknown {
     NoLevers,
     #[error("slopes with limits at each real leg are not derived")]
     RealLegs,
-    #[error("slopes through flight are not derived")]
-    Flight,
     #[error("the motion cannot be followed")]
     Undefined,
     #[error(
@@ -80,9 +78,6 @@ pub fn sensitivities(
     motion: &Motion,
 ) -> Result<Sensitivities, Unknown> {
     let (d, levers) = (gait.description(), gait.levers());
-    if d.has(Mode::Flight) {
-        return Err(Unknown::Flight);
-    }
     if levers.is_empty() {
         return Err(Unknown::NoLevers);
     }
