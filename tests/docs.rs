@@ -70,7 +70,7 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// Each document's commands run one after another in a folder of their own with the specification, where `piaffe` is this build's.
+/// Each document's commands run one after another in a folder of their own with the specifications, where `piaffe` is this build's.
 /// What starts with `cargo` builds the project and is another test's.
 #[test]
 fn commands_in_the_documents_run() {
@@ -79,7 +79,9 @@ fn commands_in_the_documents_run() {
     let mut count = 0;
     for file in documents() {
         let folder = tempfile::tempdir().unwrap();
-        copy(&root().join("model-spec"), &folder.path().join("model-spec"));
+        for robots in ["model-spec", "runs"] {
+            copy(&root().join(robots), &folder.path().join(robots));
+        }
         let text = std::fs::read_to_string(&file).unwrap();
         let all = blocks(&text, "console").into_iter().flat_map(|block| commands(&block));
         for command in all.filter(|c| !c.starts_with("cargo")) {

@@ -96,7 +96,9 @@ impl<'a> Slopes<'a> {
         for (k, end) in ends.iter().enumerate() {
             let before = (k + d.phases.len() - 1) % d.phases.len();
             lagrangian += self.half_step(&numbers, &limits, k, ends[before].rates(d), &mut travel)?;
-            if let (End::Lands(landing), Some(impact)) = (end, ImpactConstraints::with(d, d.transition(k), limits.friction)) {
+            if let (End::Lands(landing), Some(impact)) =
+                (end, ImpactConstraints::with(d, d.transition(k), limits.friction))
+            {
                 lagrangian -= landing.height.scale(self.multiplier(Equation::Touchdown(k)) / units.length);
                 let end = [&landing.impact.impulse.as_slice()[..d.positions()], &[landing.impact.leaving.y]].concat();
                 for (i, multiplier) in self.priced() {
@@ -182,7 +184,8 @@ impl<'a> Slopes<'a> {
         half_step.betad_initial = rate(d.unactuated);
         let duration = self.motion.half_steps[k].duration;
         let (mode, swings) = (cycle.mode(k), swings(d, k));
-        let mut phase = Phase::with(d, numbers.clone(), &half_step, Contact::of(d, numbers, &self.phases(), k), k + 1).ok()?;
+        let mut phase =
+            Phase::with(d, numbers.clone(), &half_step, Contact::of(d, numbers, &self.phases(), k), k + 1).ok()?;
 
         // β and σ at the end: these numbers change σ(q, q̇) of the wanted end and of the motion's alike.
         let [beta, betad] = phase.beta_end();

@@ -9,8 +9,8 @@ mod lagrangian;
 use crate::constraints::sharing::applies;
 use crate::optimality::{KKT_RESIDUAL, Linearized};
 use lagrangian::{LANES, Slopes};
-use piaffe_model::motion::{Criterion, Motion};
 use piaffe_model::Gait;
+use piaffe_model::motion::{Criterion, Motion};
 use serde::{Deserialize, Serialize};
 
 /// Slopes of the least criterion.
