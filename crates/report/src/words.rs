@@ -19,9 +19,8 @@ fn sentence(limit: Limit, of: &str) -> String {
         Limit::FrictionOfFoot => {
             format!("The foot of {of} is on the edge of its friction cone while it stands: it is about to slip.")
         }
-        Limit::Clearance | Limit::ClearanceOfFoot => {
-            "The swing foot touches the parabola that it must stay above.".into()
-        }
+        Limit::Clearance => "The swing foot touches the curve that it must stay above.".into(),
+        Limit::ClearanceOfFoot => format!("The foot of {of} touches the curve that it must stay above."),
         Limit::PlatformHeight => "The mass centre of the platform is as low as is allowed.".into(),
         Limit::Height => format!("{of} is as near to the ground as is allowed."),
         Limit::ShortestHalfStep => "The half step is as short as is allowed.".into(),
