@@ -86,7 +86,7 @@ pub fn print(description: &Description, r: &GaitResult) -> std::io::Result<()> {
         if let Some((phase, _)) = flights.into_iter().find(|(phase, t)| **t <= phase.duration[0] * (1.0 + SHORTEST)) {
             writeln!(
                 out,
-                "  flight          as short as is allowed ({} s): a walk in disguise, which the gait without flight may do for less",
+                "  flight          as short as is allowed ({} s): the gait without it may cost less",
                 phase.duration[0]
             )?;
         }
