@@ -343,13 +343,17 @@ impl Description {
         self.phases.iter().any(|phase| phase.mode == mode)
     }
 
+    /// The mode of the `i`-th phase of a motion without end, 0 being the gait's first: with the legs' names of that one.
+    pub fn mode(&self, i: isize) -> Mode {
+        let count = self.phases.len() as isize;
+        let mode = self.phases[i.rem_euclid(count) as usize].mode;
+        let exchanged = self.then == Then::Mirrored && i.div_euclid(count).rem_euclid(2) == 1;
+        if exchanged { mode.exchanged() } else { mode }
+    }
+
     /// What ends phase `k`.
     pub fn transition(&self, k: usize) -> Transition {
-        let next = match self.phases[(k + 1) % self.phases.len()].mode {
-            mode if self.exchanges(k) => mode.exchanged(),
-            mode => mode,
-        };
-        match (self.phases[k].mode, next) {
+        match (self.phases[k].mode, self.mode(k as isize + 1)) {
             (Mode::Stance(leg), Mode::Flight) => Transition::TakeOff(leg),
             (Mode::Stance(from), to) => Transition::Touchdown(to.stance().unwrap_or(1 - from)),
             (Mode::Flight, to) => Transition::Landing(to.stance().unwrap_or_default()),

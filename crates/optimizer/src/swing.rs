@@ -79,10 +79,7 @@ impl Swing {
             Then::Mirrored => 2 * count,
             Then::Repeat => count,
         };
-        let mode = |i: usize| match d.phases[i % count].mode {
-            mode if i % cycle >= count => mode.exchanged(),
-            mode => mode,
-        };
+        let mode = |i: usize| d.mode(i as isize);
         let stands = |i: usize| mode(i) == Mode::Stance(leg);
         let last_stance = (k + 1..k + cycle).rev().find(|i| stands(*i))?;
         let next_stance = (k + 1..k + cycle).find(|i| stands(*i))?;

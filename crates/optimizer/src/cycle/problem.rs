@@ -7,7 +7,7 @@
 use super::dip::Dip;
 use super::rows::{Equation, Row};
 use super::{Cycle, Label};
-use crate::constraints::PathConstraint;
+use crate::constraints::{ImpactConstraints, PathConstraint};
 use crate::cost::Drive;
 use crate::lgl::NODES;
 use piaffe_model::shape::Block;
@@ -45,6 +45,21 @@ impl Cycle<'_> {
         for (dip, mu) in self.phases[phase].dips.iter().zip(&mu[self.rows.of(phase).dips.clone()]) {
             if *mu != 0.0 {
                 visit(dip, *mu);
+            }
+        }
+    }
+
+    /// Calls `visit(impact, row, multiplier)` for every row of the impact at the end of a phase with a multiplier.
+    pub(super) fn weighted_impacts(
+        &self,
+        phase: usize,
+        mu: &[f64],
+        mut visit: impl FnMut(&ImpactConstraints, usize, f64),
+    ) {
+        let Some(impact) = &self.phases[phase].impact else { return };
+        for (row, mu) in mu[self.rows.of(phase).impacts.clone()].iter().enumerate() {
+            if *mu != 0.0 {
+                visit(impact, row, *mu);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use super::Cycle;
 use crate::instant::Glance;
-use piaffe_model::{FORWARD, Mode, UP};
+use piaffe_model::Mode;
 
 /// One instant of a phase. Positions are from the stance foot, or in flight from the ground below where the mass centre took off;
 /// world axes, m.
@@ -39,10 +39,8 @@ impl Cycle<'_> {
         let share = p.mesh.nodes[node].0;
         let fall = p.fall(d);
         if let Some(fall) = fall {
-            for place in platform.chunks_mut(d.positions()).chain(feet.chunks_mut(d.positions())) {
-                place[FORWARD] += fall.advance(share);
-                place[UP] += fall.height(share);
-            }
+            fall.carry(share, &mut platform, d.positions());
+            fall.carry(share, &mut feet, d.positions());
         }
         Sample {
             share,

@@ -48,6 +48,15 @@ impl Fall {
         self.velocity[FORWARD] * s * self.duration
     }
 
+    /// Adds to points that are given from the mass centre, `components` each, where it is at share `s`, m.
+    pub fn carry(&self, s: f64, points: &mut [f64], components: usize) {
+        let (advance, height) = (self.advance(s), self.height(s));
+        for point in points.chunks_mut(components) {
+            point[FORWARD] += advance;
+            point[UP] += height;
+        }
+    }
+
     /// Adds `weight` times the gradient of its height at `s` in the parameters.
     pub fn add_height_gradient(&self, s: f64, weight: f64, out: &mut [f64]) {
         out[self.layout.centre_height()] += weight;

@@ -4,7 +4,7 @@ use super::Quantities;
 use crate::flow::{Fall, Flow, Layout, Mesh, State, Undefined};
 use crate::swing::{Swing, swings};
 use piaffe_model::shape::ModeShapes;
-use piaffe_model::{Description, FORWARD, Gait, Mode, UP};
+use piaffe_model::{Description, Gait, Mode, UP};
 
 /// One instant between the nodes: the same quantities, without derivatives.
 #[derive(Clone, Debug)]
@@ -83,10 +83,8 @@ impl Glance {
         if let Some(fall) = Fall::new(layout, gait.description().gravity, parameters) {
             fallen = fall.height(s);
             self.centre_velocity = fall.velocity(s);
-            for place in self.platform.chunks_mut(components).chain(self.feet.chunks_mut(components)) {
-                place[FORWARD] += fall.advance(s);
-                place[UP] += fallen;
-            }
+            fall.carry(s, &mut self.platform, components);
+            fall.carry(s, &mut self.feet, components);
         }
         y.write(&mut self.values, [q, qd], [torques, force], self.platform[UP]);
         self.durations.clear();

@@ -7,7 +7,7 @@
 use nalgebra::{DMatrix, DVector};
 use piaffe_model::motion::{HalfStep, Motion};
 use piaffe_model::units::Units;
-use piaffe_model::{Description, FORWARD, Gait, Mode, Rotation, Then, UP};
+use piaffe_model::{Description, FORWARD, Gait, Mode, Rotation, UP};
 use std::f64::consts::FRAC_PI_2;
 
 /// What distinguishes one start from another.
@@ -178,14 +178,6 @@ impl Course<'_> {
         Target { platform: from(platform), other: from(feet[1 - foot]) }
     }
 
-    /// The `i`-th phase of a motion that goes on for ever, with the legs' names of the first round.
-    fn mode(&self, i: isize) -> Mode {
-        let count = self.durations.len() as isize;
-        let mode = self.d.phases[i.rem_euclid(count) as usize].mode;
-        let exchanged = self.d.then == Then::Mirrored && i.div_euclid(count).rem_euclid(2) == 1;
-        if exchanged { mode.exchanged() } else { mode }
-    }
-
     fn duration(&self, i: isize) -> f64 {
         self.durations[i.rem_euclid(self.durations.len() as isize) as usize]
     }
@@ -203,9 +195,9 @@ impl Course<'_> {
         let height = self.plan.height * leg - self.hip(0)[UP];
         let x = self.speed * (self.start(k as isize) + s * t) + self.plan.lead * leg;
         let thrown =
-            |i: isize| if self.mode(i) == Mode::Flight { 0.5 * self.d.gravity * self.duration(i) } else { 0.0 };
+            |i: isize| if self.d.mode(i) == Mode::Flight { 0.5 * self.d.gravity * self.duration(i) } else { 0.0 };
         let k = k as isize;
-        let [v0, v1] = match self.mode(k) {
+        let [v0, v1] = match self.d.mode(k) {
             Mode::Flight => [thrown(k), -thrown(k)],
             Mode::Stance(_) => [-thrown(k - 1), thrown(k + 1)],
         };
@@ -215,7 +207,7 @@ impl Course<'_> {
 
     /// A foot stands below where its hip is midway, and glides from print to print.
     fn foot(&self, k: isize, s: f64, leg: usize) -> [f64; 2] {
-        let stands = |i: &isize| self.mode(*i) == Mode::Stance(leg);
+        let stands = |i: &isize| self.d.mode(*i) == Mode::Stance(leg);
         if stands(&k) {
             return [self.print(k, leg), 0.0];
         }

@@ -88,13 +88,10 @@ impl Cycle<'_> {
         }
         let outputs = &mut work.outputs[..b.crossing.outputs.len()];
         outputs.fill(0.0);
-        let rows = self.rows.of(before);
-        for (c, multiplier) in mu[rows.impacts.clone()].iter().enumerate().filter(|(_, m)| **m != 0.0) {
-            if let Some(impact) = &b.impact {
-                impact.partials(c, &b.crossing.outputs, |i, partial| outputs[i] -= multiplier * partial);
-            }
-        }
-        if let Some(row) = rows.pitching.filter(|_| pitches(d)) {
+        self.weighted_impacts(before, mu, |impact, row, multiplier| {
+            impact.partials(row, &b.crossing.outputs, |i, partial| outputs[i] -= multiplier * partial);
+        });
+        if let Some(row) = self.rows.of(before).pitching.filter(|_| pitches(d)) {
             outputs[pitch(d).place(0)] -= lambda[row] / self.units.angular_momentum();
         }
 
@@ -123,18 +120,16 @@ impl Cycle<'_> {
                 }
             }
         }
-        for (c, multiplier) in mu[rows.impacts.clone()].iter().enumerate().filter(|(_, m)| **m != 0.0) {
-            if let Some(impact) = &b.impact {
-                impact.curvature(c, &b.crossing.outputs, |i, j, second| {
-                    let (a, b) = (b.crossing.output_row(i), b.crossing.output_row(j));
-                    for (r, x) in a.iter().enumerate() {
-                        for (s, y) in b.iter().enumerate() {
-                            small[r * size + s] -= multiplier * second * x * y;
-                        }
+        self.weighted_impacts(before, mu, |impact, row, multiplier| {
+            impact.curvature(row, &b.crossing.outputs, |i, j, second| {
+                let (a, b) = (b.crossing.output_row(i), b.crossing.output_row(j));
+                for (r, x) in a.iter().enumerate() {
+                    for (s, y) in b.iter().enumerate() {
+                        small[r * size + s] -= multiplier * second * x * y;
                     }
-                });
-            }
-        }
+                }
+            });
+        });
         if let Transition::Landing(_) = b.crossing.transition {
             b.crossing.add_matrix(small, self.end_state(before), &mut work.rows[..n], hessian);
             // The mass centre's velocity before it is a function of the take-off.
