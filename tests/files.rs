@@ -302,7 +302,9 @@ fn files_that_have_changed_since_the_build_are_taken_and_named() {
     assert!((mass(&["model", "trot", "--json", "-"]) - 14.85).abs() < 1e-12);
 
     copy(&spec.join("rabbit"), &spec.join("hare"));
-    std::fs::remove_file(spec.join("rabbit/gaits/walk.toml")).unwrap();
+    for gait in ["walk", "run"] {
+        std::fs::remove_file(spec.join(format!("rabbit/gaits/{gait}.toml"))).unwrap();
+    }
     let note = told(&["model", "rabbit/walk"]);
     assert!(note.contains("there is no gait in model-spec/rabbit/gaits: write one"), "{note}");
     let note = told(&["model", "hare/walk"]);

@@ -21,6 +21,11 @@ fn gait(key: &str) -> &'static dyn Gait {
     *GAITS.iter().find(|g| g.description().key == key).unwrap()
 }
 
+/// Gaits that never leave the ground.
+fn walking() -> impl Iterator<Item = &'static &'static dyn Gait> {
+    GAITS.iter().filter(|g| !g.description().flies())
+}
+
 /// Every moment of a gait's optimum with what is made of it.
 fn lifted(gait: &'static dyn Gait) -> Vec<(Moment, Instant)> {
     let (_, motion) = optimum(gait, Criterion::Torque);
@@ -36,7 +41,7 @@ fn close(a: &[f64], b: &[f64], tolerance: f64) -> bool {
 
 #[test]
 fn feet_are_where_the_walk_has_them_and_those_that_stand_are_at_rest() {
-    for gait in GAITS {
+    for gait in walking() {
         let legs = Legs::new(*gait).unwrap();
         let w = legs.whole.description();
         for (m, i) in lifted(*gait) {
@@ -134,7 +139,7 @@ fn in_an_amble_the_legs_of_a_side_do_together_what_the_virtual_leg_does() {
 /// The shares of two feet are a line: no point of it may leave more room than the one that was found.
 #[test]
 fn no_other_shares_leave_more_room() {
-    for gait in GAITS.iter().filter(|g| g.description().legs[0].members.len() == 2) {
+    for gait in walking().filter(|g| g.description().legs[0].members.len() == 2) {
         let legs = Legs::new(*gait).unwrap();
         for (m, i) in lifted(*gait).into_iter().step_by(5) {
             let equations = Equations::new(legs.whole, &i.posture, legs.description.leg_length());
@@ -234,7 +239,7 @@ fn an_impact_asks_for_no_moment_that_the_feet_cannot_give() {
 /// virtual legs' do.
 #[test]
 fn where_one_foot_stands_the_real_torques_are_the_virtual_ones() {
-    for gait in GAITS.iter().filter(|g| g.description().legs.iter().all(|leg| leg.members.len() == 1)) {
+    for gait in walking().filter(|g| g.description().legs.iter().all(|leg| leg.members.len() == 1)) {
         let legs = Legs::new(*gait).unwrap();
         let lifted = lifted(*gait);
         let most = lifted.iter().flat_map(|(m, _)| &m.torque).fold(0.0f64, |most, torque| most.max(torque.abs()));
@@ -364,7 +369,7 @@ fn equal_torques_are_not_those_of_an_amble() {
 /// One real joint has one name, in whatever is written of it: the specification's own where that is one.
 #[test]
 fn a_real_joint_has_one_name_everywhere() {
-    for gait in GAITS {
+    for gait in walking() {
         let d = gait.description();
         let legs = Legs::new(*gait).unwrap();
         let whole: Vec<&str> = legs.whole.description().joints.iter().map(|j| j.name).collect();

@@ -10,17 +10,22 @@ use std::sync::LazyLock;
 
 const SPEED: f64 = 0.6;
 
-/// Any optimum of every gait.
+/// Gaits that never leave the ground.
+fn walking() -> impl Iterator<Item = &'static &'static dyn Gait> {
+    GAITS.iter().filter(|g| !g.description().flies())
+}
+
+/// Any optimum of every one of them.
 static MOTIONS: LazyLock<Vec<Motion>> = LazyLock::new(|| {
     let motion = |gait: &&dyn Gait| {
         let found = search(*gait, Criterion::Torque, SPEED, &Settings::default(), &|_| {});
         found.optima[0].local.motion.clone()
     };
-    GAITS.iter().map(motion).collect()
+    walking().map(motion).collect()
 });
 
 fn walks(intervals: usize) -> Vec<(&'static dyn Gait, Motion, Walk<'static>)> {
-    let motions = GAITS.iter().copied().zip(MOTIONS.iter().cloned());
+    let motions = walking().copied().zip(MOTIONS.iter().cloned());
     motions.map(|(gait, motion)| (gait, motion.clone(), Walk::even(gait, &motion, intervals).unwrap())).collect()
 }
 

@@ -4,7 +4,7 @@
 //! gait, to factor them, to write them; operations of some; and what rustc takes for the module at -O.
 
 use piaffe_codegen::dynamics::kernels;
-use piaffe_codegen::emit::gait_source;
+use piaffe_codegen::emit::{Embedding, embedding_source};
 use piaffe_codegen::mechanism::Mechanism;
 use piaffe_codegen::program::Program;
 use piaffe_codegen::spec::{parse_gait, parse_robot};
@@ -46,7 +46,8 @@ fn row(links: usize) -> String {
         kernels.iter().map(|k| (k.name.as_str(), Program::new(&model.ring, k).operations().flops)).collect();
     let factor = processor_time() - start - derive;
     let start = processor_time();
-    let source = gait_source(&mechanism, || (Vec::new(), String::new()), "chain", "whole", ["", ""], None, "growth");
+    let embedding = Embedding::new(&mechanism);
+    let source = embedding.functions().and_then(|functions| embedding_source(&functions, None, "growth"));
     let source = source.expect("the chain can be written");
     let all = processor_time() - start;
     let files = RobotFiles { module: "chain".into(), robot, gaits: vec![gait] };

@@ -276,21 +276,38 @@ pub fn specified(robots: &[RobotFiles]) -> Result<Vec<Specified>, String> {
 /// The rendered diagnostics, if the specification has mistakes.
 pub fn generate(robots: &[RobotFiles], runtime: Option<&str>) -> Result<Vec<Generated>, String> {
     let parsed = parse(robots)?;
-    let gait_file = |robot: &Parsed, gait: &Gait, file: &SpecFile| {
-        let files = [&robot.files.robot, file];
-        let (specification, origin) = (files.map(|file| file.text.as_str()), origin(&files));
-        let (module, mechanism) = (&robot.files.module, Mechanism::new(&locked(&robot.spec, &gait.locked)?, gait));
-        let beside = || (levers(&robot.spec, gait), latex(&robot.spec, gait, &mechanism));
-        let whole = robot.wholes().iter().position(|angles| **angles == gait.locked).unwrap_or_default();
-        let source =
-            emit::gait_source(&mechanism, beside, module, &emit::whole_module(whole), specification, runtime, &origin);
-        Ok((emit::file_name(module, &gait.name), source.map_err(|e| robot.cannot_write(&gait.name, &e))?))
+    let moved = parsed.iter().map(Parsed::moved).collect::<Result<Vec<_>, _>>()?;
+    let gait_files = |robot: &Parsed, number: usize, alike: &[Moved]| {
+        let files: Vec<&SpecFile> = std::iter::once(&robot.files.robot).chain(alike.iter().map(|m| m.file)).collect();
+        let together =
+            alike.iter().skip(1).fold(alike[0].mechanism.clone(), |m, other| m.with_those_of(&other.mechanism));
+        let embedding = emit::Embedding::new(&together);
+        let beside = |m: &Moved| (levers(&robot.spec, m.gait), latex(&robot.spec, m.gait, &m.mechanism));
+        let (functions, beside) =
+            rayon::join(|| embedding.functions(), || alike.iter().map(beside).collect::<Vec<_>>());
+        let cannot_write = |e: emit::Unwritable| robot.cannot_write(&alike[0].gait.name, &e);
+        let (functions, name) = (functions.map_err(cannot_write)?, emit::embedding_module(number));
+        let source = emit::embedding_source(&functions, runtime, &origin(&files)).map_err(cannot_write)?;
+        let mut generated = vec![(emit::file_name(&robot.files.module, &name), source)];
+        for (m, (levers, latex)) in alike.iter().zip(&beside) {
+            let files = [&robot.files.robot, m.file];
+            let specification = files.map(|file| file.text.as_str());
+            let beside = emit::Beside { levers, latex, specification };
+            let whole = robot.wholes().iter().position(|angles| **angles == m.gait.locked).unwrap_or_default();
+            let whole = emit::whole_module(whole);
+            let modules = emit::Modules { robot: &robot.files.module, embedding: &name, whole: &whole };
+            let source =
+                emit::gait_source(&m.mechanism, &embedding, &functions, &beside, &modules, runtime, &origin(&files));
+            let source = source.map_err(|e| robot.cannot_write(&m.gait.name, &e))?;
+            generated.push((emit::file_name(&robot.files.module, &m.gait.name), source));
+        }
+        Ok(generated)
     };
     let whole_file = |robot: &Parsed, number: usize, angles: &Angles| {
         let whole = Whole::new(&locked(&robot.spec, angles)?);
         let source = emit::whole_source(&whole, runtime, &origin(&[&robot.files.robot]));
         let source = source.map_err(|e| robot.cannot_write("whole robot", &e))?;
-        Ok((emit::whole_file_name(&robot.files.module, number), source))
+        Ok(vec![(emit::file_name(&robot.files.module, &emit::whole_module(number)), source)])
     };
     // Whole robots first: they have the kernel that takes longest.
     let mut jobs: Vec<Job> = Vec::new();
@@ -299,10 +316,18 @@ pub fn generate(robots: &[RobotFiles], runtime: Option<&str>) -> Result<Vec<Gene
             jobs.push(Box::new(move || whole_file(robot, number, angles)));
         }
     }
-    jobs.extend(for_each_gait(&parsed, &gait_file));
+    for (robot, embeddings) in parsed.iter().zip(&moved) {
+        for (number, alike) in embeddings.iter().enumerate() {
+            jobs.push(Box::new(move || gait_files(robot, number, alike)));
+        }
+    }
     let mut files = together(jobs)?;
-    let wholes: Vec<usize> = parsed.iter().map(|robot| robot.wholes().len()).collect();
-    let registry = emit::registry_source(&all_modules(&parsed), &wholes, runtime, &origin_of_all(robots));
+    let counts = parsed
+        .iter()
+        .zip(&moved)
+        .map(|(robot, embeddings)| emit::Together { embeddings: embeddings.len(), wholes: robot.wholes().len() });
+    let counts: Vec<_> = counts.collect();
+    let registry = emit::registry_source(&all_modules(&parsed), &counts, runtime, &origin_of_all(robots));
     files.push(("gaits.rs".into(), registry.map_err(|e| e.to_string())?));
     files.push(math());
     Ok(files)
@@ -371,6 +396,27 @@ impl Parsed<'_> {
         }
         different
     }
+
+    /// Its gaits, those together that move it alike.
+    fn moved(&self) -> Result<Vec<Vec<Moved<'_>>>, String> {
+        let mut embeddings: Vec<Vec<Moved>> = Vec::new();
+        for (gait, file) in &self.gaits {
+            let mechanism = Mechanism::new(&locked(&self.spec, &gait.locked)?, gait);
+            let moved = Moved { gait, file, mechanism };
+            match embeddings.iter_mut().find(|alike| alike[0].mechanism.moves_like(&moved.mechanism)) {
+                Some(alike) => alike.push(moved),
+                None => embeddings.push(vec![moved]),
+            }
+        }
+        Ok(embeddings)
+    }
+}
+
+/// A gait with the mechanism that it makes of its robot.
+struct Moved<'p> {
+    gait: &'p Gait,
+    file: &'p SpecFile,
+    mechanism: Mechanism,
 }
 
 /// Joints by name, with the angles at which they are held, rad.
@@ -407,20 +453,21 @@ fn parse(robots: &[RobotFiles]) -> Result<Vec<Parsed<'_>>, String> {
     Ok(parsed)
 }
 
-/// What makes a file and knows of no other.
-type Job<'j> = Box<dyn FnOnce() -> Result<Generated, String> + Send + 'j>;
+/// What makes files and knows of no others.
+type Job<'j> = Box<dyn FnOnce() -> Result<Vec<Generated>, String> + Send + 'j>;
 
 fn for_each_gait<'j>(
     robots: &'j [Parsed],
     file: &'j (impl Fn(&Parsed, &Gait, &SpecFile) -> Result<Generated, String> + Sync),
 ) -> Vec<Job<'j>> {
     let gaits = robots.iter().flat_map(|robot| robot.gaits.iter().map(move |(gait, own)| (robot, gait, own)));
-    gaits.map(|(robot, gait, own)| Box::new(move || file(robot, gait, own)) as Job).collect()
+    gaits.map(|(robot, gait, own)| Box::new(move || Ok(vec![file(robot, gait, own)?])) as Job).collect()
 }
 
 /// The files, in order; the first mistake if there is any.
 fn together(jobs: Vec<Job>) -> Result<Vec<Generated>, String> {
-    in_turn(jobs, |_| (), || (), |_, job| job()).into_iter().collect()
+    let files: Vec<_> = in_turn(jobs, |_| (), || (), |_, job| job()).into_iter().collect::<Result<_, _>>()?;
+    Ok(files.into_iter().flatten().collect())
 }
 
 /// Names of the robots' modules and of their gaits.

@@ -1,7 +1,7 @@
 //! A kernel: inputs, outputs, and what they mean.
 
 use crate::expr::{Poly, Var};
-use crate::mechanism::Mode;
+use crate::mechanism::{Mechanism, Mode, Transition};
 
 /// A group of expressions evaluated together; becomes one generated function.
 #[derive(Clone, Debug)]
@@ -13,8 +13,16 @@ pub struct Kernel {
     pub outputs: Vec<Output>,
     /// Whether it is also wanted for many states at once.
     pub batched: bool,
-    /// The mode that it is of, if it is of one.
-    pub mode: Option<Mode>,
+    pub of: Of,
+}
+
+/// What has a kernel of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Of {
+    /// The robot, whatever stands.
+    Robot,
+    Mode(Mode),
+    Transition(Transition),
 }
 
 #[derive(Clone, Debug)]
@@ -114,7 +122,7 @@ impl Kernel {
             inputs: Vec::new(),
             outputs: Vec::new(),
             batched: false,
-            mode: None,
+            of: Of::Robot,
         }
     }
 
@@ -125,13 +133,32 @@ impl Kernel {
 
     /// One of the kernels of a mode: what it computes is called `what`.
     pub fn of_mode(mode: Mode, what: &str, doc: impl Into<String>) -> Kernel {
-        Kernel { mode: Some(mode), ..Kernel::new(mode.kernel(what), doc) }
+        Kernel { of: Of::Mode(mode), ..Kernel::new(mode.kernel(what), doc) }
+    }
+
+    /// One of the kernels of a transition; `what` as in [`Transition::kernel`].
+    pub fn of_transition(transition: Transition, what: &str, doc: impl Into<String>) -> Kernel {
+        Kernel { of: Of::Transition(transition), ..Kernel::new(transition.kernel(what), doc) }
+    }
+
+    /// The mode that it is of, if it is of one.
+    pub fn mode(&self) -> Option<Mode> {
+        if let Of::Mode(mode) = self.of { Some(mode) } else { None }
+    }
+
+    /// Whether a gait with these modes and transitions can need it.
+    pub fn serves(&self, mechanism: &Mechanism) -> bool {
+        match self.of {
+            Of::Robot => true,
+            Of::Mode(mode) => mechanism.modes.contains(&mode),
+            Of::Transition(transition) => mechanism.transitions.contains(&transition),
+        }
     }
 
     /// What it computes, whichever mode or leg it is of: trait methods are called like this.
     pub fn base(&self) -> &str {
         let base = self.name.trim_end_matches(|c: char| c.is_ascii_digit());
-        self.mode.and_then(|mode| base.strip_prefix(mode.prefix())).unwrap_or(base)
+        self.mode().and_then(|mode| base.strip_prefix(mode.prefix())).unwrap_or(base)
     }
 
     /// Whether there are twins for the legs.

@@ -24,7 +24,7 @@ mod whole;
 
 pub use closed_forms::{Equation, Section, closed_forms};
 pub use heights::lowest;
-pub use kernel::{Block, Input, Kernel, Output, Shape};
+pub use kernel::{Block, Input, Kernel, Of, Output, Shape};
 pub use lumps::{LUMPS, PARAMETERS};
 pub use model::Model;
 pub use quantities::{BodyQuantities, Quantities};

@@ -85,8 +85,9 @@ fn terms(model: &mut Model, mode: Mode, turn: &Turn) -> Weighted {
 /// The weighted sum of what a transition does.
 pub fn of_transition(model: &mut Model, transition: Transition) -> Weighted {
     let results = Results::new(model, transition);
-    let kernel = Kernel::new(
-        transition.kernel("_sensitivity"),
+    let kernel = Kernel::of_transition(
+        transition,
+        "_sensitivity",
         "Gradient in the lumped parameters of what a transition does, with the weights of its curvature's kernel.",
     );
     let kernel = kernel.inputs(results.inputs);

@@ -97,8 +97,9 @@ pub fn curvature(model: &mut Model, transition: Transition) -> Kernel {
         Some(leg) => landing_curvature(model, transition, leg),
         None => {
             let (weights, sum) = TakeOff::new(model, transition).weighted(model);
-            let kernel = Kernel::new(
-                transition.kernel("_curvature"),
+            let kernel = Kernel::of_transition(
+                transition,
+                "_curvature",
                 "Gradient in (q, q̇, q̈) and second derivatives of a take-off's results, weighted: r, v, lift.",
             )
             .input("q", model.q(0))
@@ -268,7 +269,7 @@ fn landing(model: &mut Model, transition: Transition, leg: usize) -> Kernel {
         "Impact on this foot at the end of a flight (eq. 12), with its Jacobian in w = (q, v⁻, q̇⁻), v the mass centre's velocity."
     };
     let components = values.len();
-    let mut kernel = Kernel::new(transition.kernel(""), doc)
+    let mut kernel = Kernel::of_transition(transition, "", doc)
         .input("q", q.clone())
         .inputs(given.inputs())
         .vector("qd_plus", solution, "q̇⁺, before the legs swap names")
@@ -374,7 +375,7 @@ fn landing_curvature(model: &mut Model, transition: Transition, leg: usize) -> K
             "∂²/∂q∂(v⁻, q̇⁻)",
         ),
     };
-    Kernel::new(transition.kernel("_curvature"), doc)
+    Kernel::of_transition(transition, "_curvature", doc)
         .input("q", q)
         .inputs(given.inputs())
         .input("xi", xi)
@@ -420,8 +421,9 @@ impl TakeOff {
         let r_q = model.jacobian(&self.place, &q);
         let v_w = model.jacobian(&self.velocity, &to_velocity);
         let gradient = model.jacobian(std::slice::from_ref(&self.lift), &to_acceleration).remove(0);
-        Kernel::new(
-            transition.kernel(""),
+        Kernel::of_transition(
+            transition,
+            "",
             "What begins when this foot, at rest so far, leaves the ground: the mass centre's parabola, seen from the \
              foot, and the foot's rise; with Jacobians.",
         )

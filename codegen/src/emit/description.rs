@@ -14,7 +14,7 @@ pub fn description(
     m: &Mechanism,
     key: &str,
     lowest: &[usize],
-    functions: &[Function],
+    functions: &[&Function],
     runtime: &Path,
 ) -> Written<TokenStream> {
     let rotation = match m.rotation {

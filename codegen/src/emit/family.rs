@@ -1,8 +1,9 @@
 //! One generated module per gait of a family of robots, and the registry of all.
 
 use super::description::{description, each};
+use super::embedding::{comment, header, items};
 use super::function::{Function, functions};
-use super::gait::{comment, header, items, methods};
+use super::methods::methods;
 use super::modules::{Place, file_name, key, places, tree};
 use super::tokens::{Written, doc, float, ident, path, print, whole};
 use crate::dynamics::{family_kernels, lowest};
@@ -30,7 +31,7 @@ pub fn family_source(family: &Family, robot: &str, latex: &str, runtime: &str, o
     [&numbers, &lumps, &jacobian].into_iter().for_each(|f| source += &f.source);
     let count = lumps.kernel.outputs[0].values.len();
     let (key, runtime) = (key(robot, &family.mechanism.gait), path(runtime)?);
-    let description = description(&family.mechanism, &key, &lowest, &gait, &runtime)?;
+    let description = description(&family.mechanism, &key, &lowest, &gait.iter().collect::<Vec<_>>(), &runtime)?;
     let of_lumps = sensitivity.iter().chain([&jacobian]);
     source += &print(implementation(family, description, count, &gait, of_lumps, latex, &runtime)?)?;
     Ok(source)
@@ -50,7 +51,8 @@ fn implementation<'f>(
     let name = ident(&type_name(&m.gait))?;
     let text = doc(&format!("The {} of a member of the family of `{}`.", m.gait, m.robot));
     let (lumps, parameters) = (whole(lumps), whole(family.parameters.len()));
-    let (of_state, of_lumps) = (methods(gait, runtime)?, methods(of_lumps, runtime)?);
+    let inline = quote!(#[inline]);
+    let (of_state, of_lumps) = (methods(gait, &inline, runtime)?, methods(of_lumps, &inline, runtime)?);
     Ok(quote! {
         #text
         #[derive(Clone, Debug)]

@@ -1,8 +1,8 @@
 //! The registry of all gaits: a module for each, in those of their robots.
 
-use super::gait::comment;
+use super::embedding::{comment, embedding_module};
 use super::tokens::{Written, doc, ident, path, print};
-use super::whole::{whole_file_name, whole_module};
+use super::whole::whole_module;
 use crate::spec::name::{module_name, type_name};
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
@@ -20,22 +20,36 @@ pub fn file_name(robot: &str, gait: &str) -> String {
     key(robot, &format!("{}.rs", module_name(gait)))
 }
 
-/// Source of the module that holds all gaits of a build; `wholes` tells how many whole robots each robot is.
+/// Name of the `number`-th of some modules of a robot: the first needs no number.
+pub(super) fn numbered(name: &str, number: usize) -> String {
+    if number == 0 { name.into() } else { format!("{name}{}", number + 1) }
+}
+
+/// What the gaits of a robot have together: in how many ways they move it, and how many whole robots it is to them.
+#[derive(Clone, Copy, Debug)]
+pub struct Together {
+    pub embeddings: usize,
+    pub wholes: usize,
+}
+
+/// Source of the module that holds all gaits of a build; `together` is for each robot.
 ///
 /// # Errors
 /// If a name of it cannot be one in Rust.
 pub fn registry_source(
     robots: &[(&str, Vec<String>)],
-    wholes: &[usize],
+    together: &[Together],
     runtime: Option<&str>,
     origin: &str,
 ) -> Written<String> {
-    let whole = |robot: usize| {
-        let file = |number| whole_file_name(robots[robot].0, number);
-        let modules = (0..wholes[robot]).map(|n| module(&whole_module(n), "The whole robot.", &file(n)));
-        modules.collect::<Written<TokenStream>>()
+    let shared = |robot: usize| {
+        let Together { embeddings, wholes } = together[robot];
+        let numbered = |name: String, what: &str| module(&name, what, &file_name(robots[robot].0, &name));
+        let embeddings = (0..embeddings).map(|n| numbered(embedding_module(n), "Kernels that gaits have together."));
+        let wholes = (0..wholes).map(|n| numbered(whole_module(n), "The whole robot."));
+        embeddings.chain(wholes).collect::<Written<TokenStream>>()
     };
-    let mut items = tree(robots, file_name, whole)?;
+    let mut items = tree(robots, file_name, shared)?;
     if let Some(runtime) = runtime {
         let runtime = path(runtime)?;
         let gaits = places(robots)?.into_iter().map(|Place { module, ty }| quote!(&#module::#ty));

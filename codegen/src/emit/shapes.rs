@@ -13,9 +13,9 @@ use syn::Path;
 
 /// The shapes of all kernels but those that give one thing: of each mode, then the others. Twins for both legs have the same,
 /// but for the length of what is known early, which is that of the longer.
-pub fn shapes(functions: &[Function], all: &TokenStream, runtime: &Path) -> Written<TokenStream> {
+pub fn shapes(functions: &[&Function], all: &TokenStream, runtime: &Path) -> Written<TokenStream> {
     type Belongs = fn(Option<Mode>) -> bool;
-    let kernels = |belongs: Belongs| functions.iter().map(|f| f.kernel).filter(move |k| belongs(k.mode));
+    let kernels = |belongs: Belongs| functions.iter().map(|f| f.kernel).filter(move |k| belongs(k.mode()));
     let modes: [(&str, Belongs); 2] =
         [("stance", |m| matches!(m, Some(Mode::Stance(_)))), ("flight", |m| m == Some(Mode::Flight))];
     let of_mode = modes.into_iter().filter(|(_, belongs)| kernels(*belongs).next().is_some()).map(|(name, belongs)| {

@@ -1,9 +1,10 @@
 //! The module of a whole robot, which its gaits share.
 
 use super::description::{body, each};
+use super::embedding::{header, items};
 use super::function::{Function, functions};
-use super::gait::{header, items, methods};
-use super::modules::key;
+use super::methods::methods;
+use super::modules::numbered;
 use super::shapes::shapes;
 use super::tokens::{Written, doc, float, floats, path, print, whole as number};
 use crate::dynamics::whole_kernels;
@@ -30,12 +31,7 @@ pub fn whole_source(whole: &Whole, runtime: Option<&str>, origin: &str) -> Writt
 
 /// Name of the module with the `number`-th way in which the gaits of a robot lock its joints.
 pub fn whole_module(number: usize) -> String {
-    if number == 0 { WHOLE.into() } else { format!("{WHOLE}{}", number + 1) }
-}
-
-/// Name of its generated file.
-pub fn whole_file_name(robot: &str, number: usize) -> String {
-    key(robot, &format!("{}.rs", whole_module(number)))
+    numbered(WHOLE, number)
 }
 
 fn implementation(whole: &Whole, functions: &[Function], runtime: &Path) -> Written<TokenStream> {
@@ -44,8 +40,8 @@ fn implementation(whole: &Whole, functions: &[Function], runtime: &Path) -> Writ
     let bodies = each(&whole.bodies, |b| body(b, runtime))?;
     let joints = each(&whole.joints, |j| joint(j, runtime))?;
     let legs = each(&whole.legs, |l| leg(l, runtime))?;
-    let shapes = shapes(functions, &quote!(#runtime::whole::Shapes), runtime)?;
-    let methods = methods(functions, runtime)?;
+    let shapes = shapes(&functions.iter().collect::<Vec<_>>(), &quote!(#runtime::whole::Shapes), runtime)?;
+    let methods = methods(functions, &quote!(#[inline]), runtime)?;
     Ok(quote! {
         #text
         #[derive(Clone, Copy, Debug, Default)]

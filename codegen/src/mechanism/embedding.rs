@@ -13,7 +13,7 @@ use crate::spec::{Leg, Robot};
 use std::ops::Range;
 
 /// Real legs that move as one.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct VirtualLeg {
     pub members: Vec<Member>,
     /// The coordinates that the joints of every member follow.
@@ -25,7 +25,7 @@ pub struct VirtualLeg {
 }
 
 /// A real leg: its own links, in the coordinates of the virtual leg.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Member {
     pub name: String,
     /// From the platform down, under the names that are theirs alone. The parent of the first is the platform, of the others the
@@ -73,6 +73,31 @@ impl VirtualLeg {
     /// Its first link in [`Mechanism::bodies`].
     pub fn first_body(&self) -> usize {
         self.foot_body + 1 - self.joints.len()
+    }
+}
+
+impl Mechanism {
+    /// Whether gaits of both move the robot alike, in whatever phases and within whatever limits: their kernels are the same.
+    pub fn moves_like(&self, other: &Mechanism) -> bool {
+        let embedding = |m: &Mechanism| Mechanism {
+            gait: String::new(),
+            phases: Vec::new(),
+            modes: Vec::new(),
+            transitions: Vec::new(),
+            polynomial_order: 0,
+            limits: self.limits.clone(),
+            ..m.clone()
+        };
+        embedding(self) == embedding(other)
+    }
+
+    /// The same with the modes and transitions of another one that moves alike.
+    pub fn with_those_of(mut self, other: &Mechanism) -> Mechanism {
+        self.modes.extend(other.modes.iter().filter(|mode| !self.modes.contains(mode)).copied().collect::<Vec<_>>());
+        let more = other.transitions.iter().filter(|t| !self.transitions.contains(t)).copied();
+        self.transitions.extend(more.collect::<Vec<_>>());
+        self.transitions.sort_by_key(|t| (t.to, t.from));
+        self
     }
 }
 

@@ -23,7 +23,7 @@ pub use transition::Transition;
 use crate::spec::{Gait, Joint, Limits, Robot, Rotation, Then, Unactuated};
 
 /// A robot as one gait moves it; SI units, body axes x forward, y up, z right.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Mechanism {
     pub gait: String,
     pub robot: String,
@@ -52,7 +52,7 @@ pub struct Mechanism {
 }
 
 /// An actuated joint of a virtual leg, seen at the joint: N·m, rad/s.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Actuated {
     pub name: String,
     pub range: [f64; 2],

@@ -5,7 +5,7 @@ use crate::spec;
 
 /// A situation in which the robot moves. With every joint driven, what no torque can reach are the turns of the whole robot that
 /// keep its contacts fixed: one in the plane, whether a foot stands or none.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Mode {
     /// On the foot of this leg (0 or 1).
     Stance(usize),

@@ -65,7 +65,7 @@ impl Whole {
 }
 
 /// A rigid body and the joint that carries it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Body {
     pub name: String,
     pub parent: Option<usize>,

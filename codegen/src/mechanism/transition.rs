@@ -38,7 +38,8 @@ impl Transition {
     }
 }
 
-/// The transitions of a gait. Legs are called as in the phase before, so that those of the mirror image are the same.
+/// The transitions of a gait, in an order that does not depend on that of its phases. Legs are called as in the phase before, so
+/// that those of the mirror image are the same.
 pub fn all(phases: &[Phase], then: Then) -> Vec<Transition> {
     let following = phases.iter().skip(1).chain(phases.first());
     let mut transitions = Vec::new();
@@ -50,5 +51,6 @@ pub fn all(phases: &[Phase], then: Then) -> Vec<Transition> {
             transitions.push(transition);
         }
     }
+    transitions.sort_by_key(|t| (t.to, t.from));
     transitions
 }

@@ -151,10 +151,10 @@ fn is_identifier(name: &str) -> bool {
 }
 
 fn unusable_as_module(module: &str) -> Option<&'static str> {
-    let whole = module.trim_end_matches(|c: char| c.is_ascii_digit()) == WHOLE;
+    let numbered = [EMBEDDING, WHOLE].contains(&module.trim_end_matches(|c: char| c.is_ascii_digit()));
     if KEYWORDS.iter().any(|word| word.eq_ignore_ascii_case(module)) {
         Some("a word of Rust")
-    } else if whole || MODULES.contains(&module) {
+    } else if numbered || MODULES.contains(&module) {
         Some("which the generated code has itself")
     } else if LIBRARIES.contains(&module) {
         Some("the name of a library that generated code needs")
@@ -164,6 +164,9 @@ fn unusable_as_module(module: &str) -> Option<&'static str> {
         None
     }
 }
+
+/// Name of the module with the kernels of gaits that move their robot alike. Those of further ways have a number behind it.
+pub const EMBEDDING: &str = "embedding";
 
 /// Name of the module of a whole robot. Those of further ways to lock its joints have a number behind it.
 pub const WHOLE: &str = "whole";
@@ -271,8 +274,21 @@ mod tests {
             "Landing",
             "flight_late",
         ];
-        let modules =
-            ["Math", "gaits", "specification", "Families", "whole", "WHOLE2", "std", "core", "piaffe", "con", "LPT1"];
+        let modules = [
+            "Math",
+            "gaits",
+            "specification",
+            "Families",
+            "whole",
+            "WHOLE2",
+            "embedding",
+            "Embedding3",
+            "std",
+            "core",
+            "piaffe",
+            "con",
+            "LPT1",
+        ];
         for bad in keywords.iter().chain(&items).chain(&modules) {
             assert!(unusable_in_rust(bad).is_some(), "{bad}");
         }

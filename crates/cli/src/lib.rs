@@ -221,8 +221,9 @@ enum Command {
         after_help = "Example:\n  piaffe sweep --gait trot --gait amble --criterion all --speeds 0.1..1.6:0.1 --out sweep"
     )]
     Sweep {
-        /// May be given several times; all gaits of the first robot if it is not given.
-        #[arg(long, value_parser = gait_names())]
+        /// May be given several times; if it is not given, the gaits of the first robot that never leave the ground. `all` are those
+        /// that fly too, whose searches take ten times as long.
+        #[arg(long, value_parser = gait_names_or_all())]
         gait: Vec<String>,
         /// energy, torque or all; may be given several times.
         #[arg(long, value_parser = PossibleValuesParser::new(["energy", "torque", "all"]), default_value = "all")]
@@ -345,6 +346,14 @@ fn gait_names() -> ValueParser {
     robots::keys().map_or_else(ValueParser::string, |keys| PossibleValuesParser::new(keys).into())
 }
 
+/// Instead of the names of gaits: all of them.
+const ALL: &str = "all";
+
+fn gait_names_or_all() -> ValueParser {
+    let names = |keys: Vec<&'static str>| PossibleValuesParser::new([ALL].into_iter().chain(keys)).into();
+    robots::keys().map_or_else(ValueParser::string, names)
+}
+
 /// Does what was asked for.
 fn answer(arguments: Arguments) -> anyhow::Result<bool> {
     let of_paper = arguments.robot.is_none() && arguments.set.is_empty();
@@ -366,7 +375,11 @@ fn answer(arguments: Arguments) -> anyhow::Result<bool> {
         Some(Command::Report { results, detail, out }) => report::run(&results, detail, &out),
         Some(Command::Sweep { gait, criterion, speeds, real_legs, folder, starts, seed }) => {
             let named = || gait.iter().map(|gait| by_name(gait)).collect::<anyhow::Result<_>>();
-            let gaits = if gait.is_empty() { robots::first()? } else { named()? };
+            let gaits: Vec<_> = match &gait[..] {
+                [] => robots::first()?.into_iter().filter(|gait| !gait.description().flies()).collect(),
+                names if names.iter().any(|name| name == ALL) => robots::first()?,
+                _ => named()?,
+            };
             let wanted = |c: &Criterion| criterion.iter().any(|w| w == "all" || w == c.name());
             let criteria: Vec<Criterion> = Criterion::ALL.into_iter().filter(wanted).collect();
             sweep::run(&gaits, real_legs, &criteria, &speeds, &folder, &settings(starts, seed))

@@ -1,8 +1,10 @@
-//! The main job: every gait and criterion at 0.6 m/s, beside the values of the paper (§6.2, §6.3).
+//! The main job: every gait and criterion, those that walk at 0.6 m/s beside the values of the paper (§6.2, §6.3), those that fly at
+//! 1 m/s.
 
 use super::digits::decimal;
 use super::optimize::progress;
 use super::{output, report, robots};
+use piaffe_model::Gait;
 use piaffe_model::motion::Criterion;
 use piaffe_optimizer::result::Receipt;
 use piaffe_optimizer::search::local::Task;
@@ -12,7 +14,13 @@ use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
 
-const SPEED: f64 = 0.6;
+/// Speeds of the two tables, m/s.
+const WALKING: f64 = 0.6;
+const FLYING: f64 = 1.0;
+
+/// Starts of a gait that flies. A search from one takes ten times as long as that of a walk; `piaffe optimize` goes on until it
+/// expects no other optimum.
+const STARTS_FLYING: usize = 8;
 
 /// Cost and half-step durations that the paper reports.
 struct Published {
@@ -31,56 +39,32 @@ const PUBLISHED: [Published; 6] = [
     Published { gait: "curvet", criterion: Criterion::Torque, cost: 802.26, durations: "0.456/0.298" },
 ];
 
+/// Gaits at a speed, one line for each and criterion.
+struct Table {
+    gaits: Vec<&'static dyn Gait>,
+    title: String,
+    speed: f64,
+    settings: Settings,
+    published: &'static [Published],
+}
+
 /// `of_paper` tells whether the robot is the one whose values were published.
 pub fn run(folder: &Path, of_paper: bool) -> anyhow::Result<bool> {
     let started = Instant::now();
-    let published: &[Published] = if of_paper { &PUBLISHED } else { &[] };
     std::fs::create_dir_all(folder).map_err(|e| anyhow::anyhow!("cannot create {}: {e}", folder.display()))?;
-    output::say!("Optimal gaits at {SPEED} m/s\n");
-    output::say!(
-        "{:<8} {:<9} {:>10} {:<7} {:>6} {:<13} {:>9} {:>9} {:>9}  {:>10} {:<12} active  between    real legs",
-        "gait",
-        "criterion",
-        "cost",
-        "unit",
-        "E/mgd",
-        "half steps, s",
-        "violation",
-        "cycle",
-        "KKT",
-        "paper",
-        "half steps"
-    );
-    let settings = Settings::default();
-    // In the order of the paper.
-    let mut gaits = robots::first()?;
-    gaits.sort_by_key(|g| PUBLISHED.iter().position(|p| p.gait == g.description().gait));
-    let bar = progress(settings.starts);
-    let searches = gaits.len() * Criterion::ALL.len();
     let mut records: Vec<Record> = Vec::new();
-    for criterion in Criterion::ALL {
-        for gait in &gaits {
-            let name = gait.description().gait;
-            bar.set_message(format!("{name}, {} ({} of {searches})", criterion.name(), records.len() + 1));
-            let mut result = Task { gait: *gait, criterion, speed: SPEED }.search(&settings, &[], &|_| bar.inc(1));
-            result.examine(*gait);
-            output::write_json(&folder.join(format!("{name}-{}.json", criterion.name())), &result)?;
-            let record = Record::issued(result, *gait);
-            bar.suspend(|| output::quiet_when_closed(row(&record, published)))?;
-            records.push(record);
-        }
-    }
-    bar.finish_and_clear();
-    let starts = || records.iter().map(|r| r.result.search.effort.starts);
-    let (fewest, most) = (starts().min().unwrap_or(0), starts().max().unwrap_or(0));
-    let starts = if fewest == most { most.to_string() } else { format!("{fewest} to {most}") };
-    if of_paper {
-        output::say!(
-            "\nEvery optimum is local: the best of {starts} starts. The paper does not give all of the robot's parameters"
-        );
-        output::say!("(see model-spec/robot.toml), so its values are a yardstick, not a like-for-like comparison.");
-    } else {
+    let mut between = "";
+    for table in tables(of_paper)? {
+        output::say!("{between}{} at {} m/s\n", table.title, table.speed);
+        let starts = table.fill(folder, &mut records)?;
         output::say!("\nEvery optimum is local: the best of {starts} starts.");
+        if !table.published.is_empty() {
+            output::say!(
+                "The paper does not give all of the robot's parameters (see model-spec/robot.toml), so its values are a"
+            );
+            output::say!("yardstick, not a like-for-like comparison.");
+        }
+        between = "\n";
     }
     let all = records.iter().all(Record::is_confirmed);
     let any = records.iter().any(Record::is_confirmed);
@@ -92,29 +76,111 @@ pub fn run(folder: &Path, of_paper: bool) -> anyhow::Result<bool> {
     Ok(all)
 }
 
-fn row(record: &Record, published: &[Published]) -> std::io::Result<()> {
-    let r = &record.result;
-    let mut out = output::person();
-    let durations: Vec<String> = r.durations.iter().map(|t| decimal(*t, 3)).collect();
-    let published = published.iter().find(|p| p.gait == r.gait && p.criterion == r.criterion);
-    let (paper, paper_steps) = published.map_or((String::new(), ""), |p| (format!("{:.2}", p.cost), p.durations));
-    match (r.cost, &r.receipt) {
-        (Some(cost), Some(receipt @ Receipt { kkt_residual: Some(kkt), .. })) => writeln!(
-            out,
-            "{:<8} {:<9} {:>10} {:<7} {:>6.4} {:<13} {:>9.1e} {:>9.1e} {:>9.1e}  {paper:>10} {paper_steps:<12} {:<6}  {:<9}  {}",
-            r.gait,
-            r.criterion.name(),
-            decimal(cost, 4),
-            r.criterion.unit(),
-            record.cost_of_transport().unwrap_or(f64::NAN),
-            durations.join("/"),
-            receipt.max_violation,
-            receipt.cycle_error,
-            kkt,
-            receipt.active.len(),
-            r.certificate.as_ref().map_or("", |c| c.standing.name()),
-            r.real_legs.as_ref().map_or("", |legs| legs.verdict().name()),
-        ),
-        _ => writeln!(out, "{:<8} {:<9} {} {paper:>10} {paper_steps:<12}", r.gait, r.criterion.name(), r.message),
+/// Those that have gaits.
+fn tables(of_paper: bool) -> anyhow::Result<Vec<Table>> {
+    let (flying, mut walking): (Vec<_>, Vec<_>) = robots::first()?.into_iter().partition(|g| g.description().flies());
+    // In the order of the paper.
+    walking.sort_by_key(|g| PUBLISHED.iter().position(|p| p.gait == g.description().gait));
+    let walks = Table {
+        gaits: walking,
+        title: "Optimal gaits".into(),
+        speed: WALKING,
+        settings: Settings::default(),
+        published: if of_paper { &PUBLISHED } else { &[] },
+    };
+    let runs = Table {
+        gaits: flying,
+        title: "Gaits that fly,".into(),
+        speed: FLYING,
+        settings: Settings { starts: Some(STARTS_FLYING), ..Settings::default() },
+        published: &[],
+    };
+    Ok([walks, runs].into_iter().filter(|table| !table.gaits.is_empty()).collect())
+}
+
+impl Table {
+    /// Searches, writes the results, and says each when it is found; how many starts there were.
+    fn fill(&self, folder: &Path, records: &mut Vec<Record<'static>>) -> anyhow::Result<String> {
+        let (names, steps) = self.widths();
+        let paper =
+            if self.published.is_empty() { String::new() } else { format!("  {:>10} {:<12}", "paper", "half steps") };
+        output::say!(
+            "{:<names$} {:<9} {:>10} {:<7} {:>6} {:<steps$} {:>9} {:>9} {:>9}{paper} active  between    real legs",
+            "gait",
+            "criterion",
+            "cost",
+            "unit",
+            "E/mgd",
+            self.durations(),
+            "violation",
+            "cycle",
+            "KKT",
+        );
+        let bar = progress(self.settings.starts);
+        let searches = self.gaits.len() * Criterion::ALL.len();
+        let first = records.len();
+        for criterion in Criterion::ALL {
+            for gait in &self.gaits {
+                let name = gait.description().gait;
+                bar.set_message(format!("{name}, {} ({} of {searches})", criterion.name(), records.len() - first + 1));
+                let task = Task { gait: *gait, criterion, speed: self.speed };
+                let mut result = task.search(&self.settings, &[], &|_| bar.inc(1));
+                result.examine(*gait);
+                output::write_json(&folder.join(format!("{name}-{}.json", criterion.name())), &result)?;
+                let record = Record::issued(result, *gait);
+                bar.suspend(|| output::quiet_when_closed(self.row(&record)))?;
+                records.push(record);
+            }
+        }
+        bar.finish_and_clear();
+        let starts = || records[first..].iter().map(|r| r.result.search.effort.starts);
+        let (fewest, most) = (starts().min().unwrap_or(0), starts().max().unwrap_or(0));
+        Ok(if fewest == most { most.to_string() } else { format!("{fewest} to {most}") })
+    }
+
+    /// Of a half step of a walk, of a phase of a run.
+    fn durations(&self) -> &'static str {
+        if self.gaits.iter().any(|g| g.description().flies()) { "phases, s" } else { "half steps, s" }
+    }
+
+    /// Columns of the gaits' names and of the durations.
+    fn widths(&self) -> (usize, usize) {
+        const DURATION: usize = "0.0123/".len();
+        let descriptions = || self.gaits.iter().map(|g| g.description());
+        let names = descriptions().map(|d| d.gait.len()).fold("gait".len(), usize::max);
+        (names, descriptions().map(|d| d.phases.len() * DURATION).fold(self.durations().len(), usize::max))
+    }
+
+    fn row(&self, record: &Record) -> std::io::Result<()> {
+        let r = &record.result;
+        let mut out = output::person();
+        let (names, steps) = self.widths();
+        let durations: Vec<String> = r.durations.iter().map(|t| decimal(*t, 3)).collect();
+        let published = self.published.iter().find(|p| p.gait == r.gait && p.criterion == r.criterion);
+        let beside = |p: &Published| format!("  {:>10.2} {:<12}", p.cost, p.durations);
+        let paper = match published {
+            Some(published) => beside(published),
+            None if self.published.is_empty() => String::new(),
+            None => format!("  {:>10} {:<12}", "", ""),
+        };
+        match (r.cost, &r.receipt) {
+            (Some(cost), Some(receipt @ Receipt { kkt_residual: Some(kkt), .. })) => writeln!(
+                out,
+                "{:<names$} {:<9} {:>10} {:<7} {:>6.4} {:<steps$} {:>9.1e} {:>9.1e} {:>9.1e}{paper} {:<6}  {:<9}  {}",
+                r.gait,
+                r.criterion.name(),
+                decimal(cost, 4),
+                r.criterion.unit(),
+                record.cost_of_transport().unwrap_or(f64::NAN),
+                durations.join("/"),
+                receipt.max_violation,
+                receipt.cycle_error,
+                kkt,
+                receipt.active.len(),
+                r.certificate.as_ref().map_or("", |c| c.standing.name()),
+                r.real_legs.as_ref().map_or("", |legs| legs.verdict().name()),
+            ),
+            _ => writeln!(out, "{:<names$} {:<9} {}{paper}", r.gait, r.criterion.name(), r.message),
+        }
     }
 }

@@ -1,12 +1,15 @@
 //! `piaffe optimize`: one gait, one criterion, one speed.
 
-use super::{output, summary};
+use super::{output, robots, summary};
 use indicatif::{ProgressBar, ProgressStyle};
+use piaffe_model::Gait;
 use piaffe_optimizer::altered::Altered;
+use piaffe_optimizer::cycle::theta;
 use piaffe_optimizer::result::{GaitResult, Status};
 use piaffe_optimizer::search::fastest::nearest_speed;
 use piaffe_optimizer::search::local::Task;
 use piaffe_optimizer::search::multi_start::Settings;
+use piaffe_optimizer::search::relative::related;
 
 pub fn run(task: Task, real_legs: bool, settings: &Settings, json: Option<&str>) -> anyhow::Result<bool> {
     let Task { mut gait, criterion, speed } = task;
@@ -26,9 +29,15 @@ pub fn run(task: Task, real_legs: bool, settings: &Settings, json: Option<&str>)
         result.nearest_speed = nearest_speed(gait, criterion, speed, settings);
     }
     result.examine(gait);
+    let described = json != Some("-");
+    let mut grounded = None;
+    if described && summary::shortest_flight(gait.description(), &result).is_some() {
+        bar.set_message("without flight");
+        grounded = without_flights(task.gait, &result);
+    }
     bar.finish_and_clear();
-    if json != Some("-") {
-        output::quiet_when_closed(summary::print(gait.description(), &result))?;
+    if described {
+        output::quiet_when_closed(summary::print(gait.description(), &result, grounded.as_ref()))?;
     }
     if let Some(target) = json {
         output::json_to(target, &result)?;
@@ -37,6 +46,22 @@ pub fn run(task: Task, real_legs: bool, settings: &Settings, json: Option<&str>)
         }
     }
     Ok(result.is_optimal())
+}
+
+/// Starts of a search that only sets an optimum beside another one.
+const STARTS_BESIDE: usize = 8;
+
+/// The optimum of the same task by a gait of this robot that stands alike and never flies, if there is one.
+fn without_flights(gait: &dyn Gait, result: &GaitResult) -> Option<GaitResult> {
+    let (of, motion) = (gait.description(), result.motion()?);
+    let grounded = robots::of_same_robot(of.key).find_map(|walk| {
+        let d = walk.description();
+        Some((walk, related(of, &motion, d).filter(|_| !d.flies())?))
+    });
+    let (walk, motion) = grounded?;
+    let settings = Settings { starts: Some(STARTS_BESIDE), ..Settings::default() };
+    let task = Task { gait: walk, criterion: result.criterion, speed: result.speed };
+    Some(task.search(&settings, &[theta(&motion)], &|_| {}))
 }
 
 /// Counts starts on standard error, with a bar if it is known how many there will be; hidden where that is no terminal.

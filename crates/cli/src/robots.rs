@@ -188,6 +188,12 @@ pub fn first() -> anyhow::Result<Vec<Loaded>> {
     choices().iter().filter(|choice| !choice.key.contains('/')).map(Choice::gait).collect()
 }
 
+/// The gaits of the robot of this one, as far as they can be derived.
+pub fn of_same_robot(key: &str) -> impl Iterator<Item = Loaded> {
+    let module = built::module(key);
+    choices().iter().filter(move |choice| built::module(choice.key) == module).filter_map(|choice| choice.gait().ok())
+}
+
 /// Says which files have changed since the build, so that they are used as they stand: of the robots of these gaits.
 pub fn note_of<'k>(keys: impl IntoIterator<Item = &'k str>) {
     /// Files that are named.

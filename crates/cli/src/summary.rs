@@ -44,8 +44,16 @@ fn confidence(r: &GaitResult) -> String {
     format!("reached by {} of {starts} starts{more}; {unseen}", best.reached)
 }
 
-/// Prints all there is to know about a result.
-pub fn print(description: &Description, r: &GaitResult) -> std::io::Result<()> {
+/// A flight that is as short as the gait allows: how long that is, s.
+pub fn shortest_flight(description: &Description, r: &GaitResult) -> Option<f64> {
+    let flights = description.phases.iter().zip(&r.durations).filter(|(phase, _)| phase.mode == Mode::Flight);
+    let mut shortest =
+        flights.map(|(phase, t)| (phase.duration[0], *t)).filter(|(least, t)| *t <= least * (1.0 + SHORTEST));
+    shortest.next().map(|(least, _)| least)
+}
+
+/// Prints all there is to know about a result; `grounded` is the optimum of the gait without flights, where that was looked for.
+pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitResult>) -> std::io::Result<()> {
     let mut out = super::output::person();
     writeln!(out, "{} of {}, least {} at {} m/s: {}", r.gait, r.robot, r.criterion.name(), r.speed, r.message)?;
     if !r.conflicts.is_empty() {
@@ -82,13 +90,15 @@ pub fn print(description: &Description, r: &GaitResult) -> std::io::Result<()> {
     if let Some(step) = r.step_length {
         let durations: Vec<String> = r.durations.iter().map(|t| format!("{} s", decimal(*t, 4))).collect();
         writeln!(out, "  half steps      {}", durations.join(" + "))?;
-        let flights = description.phases.iter().zip(&r.durations).filter(|(phase, _)| phase.mode == Mode::Flight);
-        if let Some((phase, _)) = flights.into_iter().find(|(phase, t)| **t <= phase.duration[0] * (1.0 + SHORTEST)) {
-            writeln!(
-                out,
-                "  flight          as short as is allowed ({} s): the gait without it may cost less",
-                phase.duration[0]
-            )?;
+        if let Some(least) = shortest_flight(description, r) {
+            let without = match grounded {
+                None => "the gait without it may cost less".into(),
+                Some(GaitResult { gait, cost: Some(cost), .. }) => {
+                    format!("without it, {gait} takes {} {}", decimal(*cost, 4), r.criterion.unit())
+                }
+                Some(GaitResult { gait, .. }) => format!("without it, no {gait} was found at this speed"),
+            };
+            writeln!(out, "  flight          as short as is allowed ({least} s): {without}")?;
         }
         writeln!(out, "  step length     {} m", decimal(step, 4))?;
     }

@@ -9,7 +9,7 @@ use piaffe_model::Gait;
 use piaffe_model::motion::Criterion;
 use piaffe_optimizer::altered::Altered;
 use piaffe_optimizer::result::GaitResult;
-use piaffe_optimizer::search::atlas::{VISITS, sweep};
+use piaffe_optimizer::search::atlas::{self, VISITS};
 use piaffe_optimizer::search::crossover::{Comparison, solve};
 use piaffe_optimizer::search::fastest::{MaximumSpeed, maximum_speed};
 use piaffe_optimizer::search::multi_start::Settings;
@@ -39,7 +39,17 @@ pub fn run(
     let visits = VISITS * (criteria.len() * speeds.len()) as u64;
     let folder = Folder::open(path, progress(gaits.iter().map(|g| visits * effort(*g)).sum()))?;
     folder.compare(&gaits.iter().map(|g| *g as &dyn Gait).collect::<Vec<_>>(), criteria, speeds, settings);
-    let mut lines: Vec<Line> = gaits.par_iter().map(|gait| line(*gait, criteria, speeds, settings, &folder)).collect();
+    let of_gait = |gait: &&'static dyn Gait| atlas::Line {
+        gait: *gait,
+        results: atlas::sweep(*gait, criteria, speeds, settings, &folder),
+    };
+    let mut found: Vec<atlas::Line> = gaits.par_iter().map(of_gait).collect();
+    folder.bar.set_message("from gait to gait");
+    atlas::share(&mut found, settings, &folder);
+    folder.bar.set_message("greatest speeds");
+    let to_its_end =
+        |(gait, found): (&&'static dyn Gait, atlas::Line)| line(*gait, found.results, criteria, settings, &folder);
+    let mut lines: Vec<Line> = gaits.par_iter().zip(found).map(to_its_end).collect();
     folder.bar.set_message("crossovers");
     let mut further = Vec::new();
     for c in 0..criteria.len() {
@@ -86,8 +96,14 @@ fn at_real_legs(gaits: &[&'static dyn Gait]) -> anyhow::Result<Vec<&'static dyn 
     gaits.iter().map(altered).collect()
 }
 
-fn line(gait: &'static dyn Gait, criteria: &[Criterion], speeds: &[f64], settings: &Settings, folder: &Folder) -> Line {
-    let mut results = sweep(gait, criteria, speeds, settings, folder);
+/// With the greatest speed, and the optima there.
+fn line(
+    gait: &'static dyn Gait,
+    mut results: Vec<Vec<GaitResult>>,
+    criteria: &[Criterion],
+    settings: &Settings,
+    folder: &Folder,
+) -> Line {
     let mut maximum = maximum_speed(gait, &results.concat(), settings, folder);
     if let Some(maximum) = &mut maximum {
         let known = results.iter().flatten().filter(|r| r.is_optimal()).map(|r| r.speed).fold(0.0, f64::max);

@@ -14,7 +14,7 @@ impl Shapes {
     pub fn new(kernels: &[Kernel]) -> Shapes {
         let mut shapes = Shapes::default();
         for kernel in kernels {
-            let path = match kernel.mode {
+            let path = match kernel.mode() {
                 Some(Mode::Stance(_)) => format!("stance.{}", kernel.base()),
                 Some(Mode::Flight) => format!("flight.{}", kernel.base()),
                 None => kernel.base().into(),

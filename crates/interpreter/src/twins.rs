@@ -51,7 +51,7 @@ pub fn tapes<'p>(
 ) -> Result<BTreeMap<String, Twins>, Unrunnable> {
     let mut tapes: BTreeMap<String, Twins> = BTreeMap::new();
     for (kernel, program) in kernels.iter().zip(programs) {
-        let which = match kernel.mode {
+        let which = match kernel.mode() {
             Some(mechanism::Mode::Flight) => Mode::Flight.which(),
             _ => usize::from(kernel.is_of_leg() && !kernel.name.ends_with('1')),
         };

@@ -5,7 +5,7 @@
 mod robots;
 
 use piaffe_codegen::dynamics::{Kernel, kernels};
-use piaffe_codegen::emit::gait_source;
+use piaffe_codegen::emit::{Embedding, embedding_source};
 use piaffe_codegen::expr::Ring;
 use piaffe_codegen::mechanism::Mechanism;
 use piaffe_codegen::program::{math, programs};
@@ -180,8 +180,7 @@ fn kernels_have_the_bits_of_the_generated_source() {
         // Flight too, where there can be some.
         let mechanism = mechanism.clone().with_flight().unwrap_or(mechanism);
         let (model, derived) = kernels(&mechanism);
-        let nothing = || (Vec::new(), String::new());
-        let source = gait_source(&mechanism, nothing, "", "whole", [""; 2], None, "here").unwrap();
+        let source = embedding_source(&Embedding::new(&mechanism).functions().unwrap(), None, "here").unwrap();
         compare(&model.ring, &derived, &source, what, &mut draws);
     }
 }

@@ -338,6 +338,11 @@ impl Description {
         costs.energy / self.weight()
     }
 
+    /// Whether some phase is a flight.
+    pub fn flies(&self) -> bool {
+        self.has(Mode::Flight)
+    }
+
     /// Whether some phase has this mode.
     pub fn has(&self, mode: Mode) -> bool {
         self.phases.iter().any(|phase| phase.mode == mode)

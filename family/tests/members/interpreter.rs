@@ -32,7 +32,7 @@ fn outputs(kernel: &Kernel) -> usize {
 
 /// What the late kernels take is what the early ones of the same derivation give.
 fn early<'k>(kernel: &Kernel, inputs: &'k BTreeMap<String, Vec<f64>>) -> Option<&'k Vec<f64>> {
-    let mode = kernel.mode.filter(|_| kernel.base().starts_with("late"))?;
+    let mode = kernel.mode().filter(|_| kernel.base().starts_with("late"))?;
     inputs.get(&mode.kernel("early"))
 }
 

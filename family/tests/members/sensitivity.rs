@@ -4,7 +4,7 @@ use super::draws::{GENERAL, member};
 use super::kernels::{assert_close, filled, vector};
 use piaffe::model::family::{Family, Parametric};
 use piaffe::model::shape::MomentumTerms;
-use piaffe::model::{FORWARD, Mode, UP};
+use piaffe::model::{FORWARD, Mode, Transition, UP};
 use piaffe_family::FAMILIES;
 
 /// Of sums of outputs that are of order one or more.
@@ -119,7 +119,7 @@ fn of_momentum_heights_and_velocities() {
 fn of_touchdowns() {
     each(|family, robot, leg, rng| {
         let d = robot.description();
-        let leg = d.transition(leg % d.phases.len()).lands().unwrap();
+        let Transition::Touchdown(leg) = d.transition(leg % d.phases.len()) else { return };
         let (n, s) = (d.orientations(), &d.shapes.touchdown);
         let (q, qd) = (vector(n, 0.8, rng), vector(n, 3.0, rng));
         let weights = vector(n + d.shapes.touchdown_curvature.outputs.len, 1.0, rng);
@@ -131,5 +131,46 @@ fn of_touchdowns() {
             dot(&weights, &values.map(|block| block.of(&results)).concat())
         };
         assert_close("touchdown", &robot.pull_back(&by_lump), &differences(family, robot, value), TOLERANCE);
+    });
+}
+
+#[test]
+fn of_landings() {
+    each(|family, robot, _, rng| {
+        let d = robot.description();
+        for leg in (0..d.phases.len())
+            .filter_map(|k| if let Transition::Landing(leg) = d.transition(k) { Some(leg) } else { None })
+        {
+            let (n, s) = (d.orientations(), &d.shapes.landing);
+            let (q, v, qd) = (vector(n, 0.8, rng), vector(d.positions(), 1.0, rng), vector(n, 3.0, rng));
+            let weights = vector(n + d.shapes.landing_curvature.outputs.len, 1.0, rng);
+            let (xi, outputs) = weights.split_at(n);
+            let by_lump = filled(robot.lumps().len(), |o| robot.landing_sensitivity(leg, &q, &v, &qd, xi, outputs, o));
+            let value = |m: &dyn Parametric| {
+                let results = filled(s.len, |o| m.landing(leg, &q, &v, &qd, o));
+                dot(&weights, &[s.qd_plus, s.impulse, s.landing].map(|block| block.of(&results)).concat())
+            };
+            assert_close("landing", &robot.pull_back(&by_lump), &differences(family, robot, value), TOLERANCE);
+        }
+    });
+}
+
+#[test]
+fn of_takeoffs() {
+    each(|family, robot, _, rng| {
+        let d = robot.description();
+        for leg in (0..d.phases.len())
+            .filter_map(|k| if let Transition::TakeOff(leg) = d.transition(k) { Some(leg) } else { None })
+        {
+            let (n, s) = (d.orientations(), &d.shapes.takeoff);
+            let (q, qd, qdd) = (vector(n, 0.8, rng), vector(n, 3.0, rng), vector(n, 30.0, rng));
+            let weights = vector(d.shapes.takeoff_curvature.weights.len, 1.0, rng);
+            let by_lump = filled(robot.lumps().len(), |o| robot.takeoff_sensitivity(leg, &q, &qd, &qdd, &weights, o));
+            let value = |m: &dyn Parametric| {
+                let results = filled(s.len, |o| m.takeoff(leg, &q, &qd, &qdd, o));
+                dot(&weights, &[s.r, s.v, s.lift].map(|block| block.of(&results)).concat())
+            };
+            assert_close("take-off", &robot.pull_back(&by_lump), &differences(family, robot, value), TOLERANCE);
+        }
     });
 }

@@ -1,15 +1,17 @@
 //! Optima over speeds (§6.5): continuation both ways, from the other criterion, and restarts.
 //!
 //! Continuation alone stays in its basin, so every speed also gets starts of its own; and what is
-//! found there is carried to the neighbours until nothing improves. To a speed without an optimum the nearest ones of all
+//! found there is carried to the neighbours until nothing improves, and to gaits that differ in their flights alone. To a speed without an optimum the nearest ones of all
 //! criteria are carried, from both sides and by small steps of the speed.
 
 use super::journal::{Journal, common, step};
 use super::local::{Local, Task};
 use super::multi_start::{Settings, search_from};
+use super::relative::related;
+use crate::cycle::theta;
 use crate::result::GaitResult;
-use piaffe_model::Gait;
 use piaffe_model::motion::Criterion;
+use piaffe_model::{Description, Gait};
 use piaffe_sqp::Control;
 use std::time::Instant;
 
@@ -45,11 +47,18 @@ pub fn sweep(
             journal.visited(gait, fresh);
         }
     }
+    carry_on(gait, &mut lines, settings, journal);
+    lines
+}
+
+/// Carries optima to their neighbours until nothing improves.
+fn carry_on(gait: &dyn Gait, lines: &mut [Vec<GaitResult>], settings: &Settings, journal: &dyn Journal) {
+    let speeds = lines.first().map_or(0, Vec::len);
     for round in 0..ROUNDS {
         let mut better = false;
-        for k in (0..speeds.len()).rev().chain(0..speeds.len()) {
-            for c in 0..criteria.len() {
-                let (improved, fresh) = carry(gait, &mut lines, c, k, settings, journal);
+        for k in (0..speeds).rev().chain(0..speeds) {
+            for c in 0..lines.len() {
+                let (improved, fresh) = carry(gait, lines, c, k, settings, journal);
                 better |= improved;
                 if round == 0 {
                     journal.visited(gait, fresh);
@@ -60,7 +69,60 @@ pub fn sweep(
             break;
         }
     }
-    lines
+}
+
+/// A gait's optima, criterion by criterion, at the same speeds as those of others.
+pub struct Line<'g> {
+    pub gait: &'g dyn Gait,
+    pub results: Vec<Vec<GaitResult>>,
+}
+
+/// Gives the optima of each gait to those that differ from it in their flights alone, and on to their neighbours.
+pub fn share(lines: &mut [Line], settings: &Settings, journal: &dyn Journal) {
+    for to in 0..lines.len() {
+        let mut better = false;
+        for from in (0..lines.len()).filter(|from| *from != to) {
+            let known = std::mem::take(&mut lines[from].results);
+            let of = lines[from].gait.description();
+            better |= take_over(&mut lines[to], of, &known, settings, journal);
+            lines[from].results = known;
+        }
+        if better {
+            let Line { gait, results } = &mut lines[to];
+            carry_on(*gait, results, settings, journal);
+        }
+    }
+}
+
+/// Starts from the optima of a relative at the same speeds; tells whether any point became better.
+fn take_over(
+    line: &mut Line,
+    of: &Description,
+    known: &[Vec<GaitResult>],
+    settings: &Settings,
+    journal: &dyn Journal,
+) -> bool {
+    let gait = line.gait;
+    let mut better = false;
+    for (point, known) in line.results.iter_mut().flatten().zip(known.iter().flatten()) {
+        let motion = known.motion().and_then(|motion| related(of, &motion, gait.description()));
+        let Some(theta) = motion.as_ref().map(theta) else { continue };
+        let (criterion, speed) = (point.criterion, point.speed);
+        let name = format!("{} {} {speed} from {}", gait.description().key, criterion.name(), of.key);
+        let inputs = (common(gait, settings), &point.local_optima, &theta);
+        let (changed, fresh) = step(journal, &name, &inputs, || {
+            let local = Task { gait, criterion, speed }.follow(&theta, &mut |_| Control::Continue);
+            let mut result = point.clone();
+            result.join(gait, &local).then_some(result)
+        });
+        let Some(changed) = changed else { continue };
+        if fresh {
+            journal.point(&changed);
+        }
+        better |= changed.cost != point.cost;
+        *point = changed;
+    }
+    better
 }
 
 /// Searches at one speed, from these neighbours too; tells whether the result is new to the journal.
