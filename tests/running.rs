@@ -3,7 +3,7 @@
 use piaffe::certificate::certify;
 use piaffe::cycle::theta;
 use piaffe::gaits::GAITS;
-use piaffe::model::{Gait, Mode, UP};
+use piaffe::model::{FORWARD, Gait, Mode, UP};
 use piaffe::motion::{Criterion, Motion};
 use piaffe::search::local::Task;
 use piaffe::search::multi_start::{Settings, search};
@@ -64,6 +64,22 @@ fn in_flight_no_foot_touches(gait: &dyn Gait, motion: &Motion) {
         }
     }
     assert!(seen > 0, "{} does not fly", d.key);
+    // Nor does anything carry the mass centre.
+    for (k, flight) in walk.phases.iter().enumerate().filter(|(_, phase)| phase.mode == Mode::Flight) {
+        let moments: Vec<_> = walk.moments.iter().filter(|m| m.phase == k).collect();
+        let [place, velocity] = moments[0].centre;
+        for m in moments {
+            let t = m.share * flight.duration;
+            let falls = place[UP] + velocity[UP] * t - 0.5 * d.gravity * t * t;
+            assert!((m.centre[0][UP] - falls).abs() < 1e-8 * d.leg_length(), "{}: {} {falls}", d.key, m.centre[0][UP]);
+            assert!(
+                (m.centre[1][FORWARD] - velocity[FORWARD]).abs() < 1e-6,
+                "{}: {:?} {velocity:?}",
+                d.key,
+                m.centre[1]
+            );
+        }
+    }
 }
 
 /// A walk and what runs in its steps lead to each other: from an optimum of one to that of the other, with no other start.

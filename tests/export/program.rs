@@ -9,9 +9,14 @@ use std::process::{Command, Stdio};
 
 /// The optimum at 0.6 m/s as the file that `piaffe optimize` writes.
 pub fn optimum(gait: &dyn Gait, criterion: Criterion) -> (GaitResult, Motion) {
+    optimum_at(gait, criterion, 0.6)
+}
+
+/// The same at any speed, m/s.
+pub fn optimum_at(gait: &dyn Gait, criterion: Criterion, speed: f64) -> (GaitResult, Motion) {
     let settings = Settings::default();
-    let found = search(gait, criterion, 0.6, &settings, &|_| {});
-    let result = GaitResult::new(gait, criterion, 0.6, &found, settings.seed, || 0.0);
+    let found = search(gait, criterion, speed, &settings, &|_| {});
+    let result = GaitResult::new(gait, criterion, speed, &found, settings.seed, || 0.0);
     let motion = result.motion().unwrap();
     (result, motion)
 }

@@ -1,5 +1,6 @@
 """One step of a lifted gait, simulated by MuJoCo: the exported robot with its own motors, driven by the lifted torques and a
-stated gain on joint errors, on ideal feet (`connect` constraints between foot and footprint, switched at each impact).
+stated gain on joint errors, on ideal feet (`connect` constraints between foot and footprint, switched from phase to phase; none in
+flight).
 
 An impact is MuJoCo's own: from the time of touchdown on, other feet are held, and the constraint brings them to rest
 within a few of its time constants of two time steps. Reads a request as JSON (paths, gains, time step), answers with errors.
@@ -27,19 +28,22 @@ def upright(v):
 
 
 moments = lift["moments"]
-halves = np.array([m["half_step"] for m in moments]) - 1
+phases = np.array([m["half_step"] for m in moments]) - 1
 column = {k: np.array([m[k] for m in moments], float) for k in ("t", "q", "qd", "torque")}
 vectors = {k: upright([m[k] for m in moments]) for k in ("position", "velocity", "omega", "force")}
 quaternions = np.array([m["quaternion"] for m in moments])
 quaternions[:, 1:] = upright(quaternions[:, 1:])
 ends = np.cumsum(lift["durations"])
-standing = [np.abs(vectors["force"][halves == h]).max(axis=(0, 2)) > 0 for h in (0, 1)]
+number = len(ends)
+standing = [np.abs(vectors["force"][phases == p]).max(axis=(0, 2)) > 0 for p in range(number)]
+# Phases that begin with an impact; the last of all is the first phase again, a step ahead.
+landings = [p for p in range(1, number + 1) if (standing[p % number] & ~standing[p - 1]).any()]
 
 
-def at(name, half, t):
-    """A lifted quantity at a time of a half step; the moments are close together."""
+def at(name, phase, t):
+    """A lifted quantity at a time of a phase; the moments are close together."""
     series = column.get(name, vectors.get(name))
-    rows = np.flatnonzero(halves == half)
+    rows = np.flatnonzero(phases == phase)
     times = column["t"][rows]
     k = int(np.clip(np.searchsorted(times, t) - 1, 0, len(rows) - 2))
     share = (t - times[k]) / (times[k + 1] - times[k])
@@ -52,7 +56,7 @@ spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
 spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_LIMIT
 spec.option.solver, spec.option.iterations, spec.option.tolerance = mujoco.mjtSolver.mjSOL_NEWTON, 50, 1e-14
 
-# Footprints: those of the second half step are where the feet have landed, those after the step lie ahead by its travel.
+# Footprints are where the feet stand in a phase; those after the step lie ahead by its travel.
 start = mujoco.MjData(spec.compile())
 first = spec.compile()
 mujoco.mj_resetDataKeyframe(first, start, first.key("start").id)
@@ -84,9 +88,12 @@ def pose(model, data, k):
     mujoco.mj_forward(model, data)
 
 
-for phase, moment, half, ahead in ((0, 0, 0, 0.0), (1, -1, 1, 0.0), (2, 0, 0, lift["travel"])):
-    pose(first, start, moment)
-    for leg, stands in zip(lift["legs"], standing[half]):
+for phase in range(number + 1):
+    ahead = lift["travel"] if phase == number else 0.0
+    # In the middle of a phase the lifted feet have stood for a while.
+    rows = np.flatnonzero(phases == phase % number)
+    pose(first, start, rows[len(rows) // 2])
+    for leg, stands in zip(lift["legs"], standing[phase % number]):
         if stands:
             hold(phase, leg, start.site(f"{leg}_foot").xpos + [ahead, 0, 0])
 
@@ -99,7 +106,7 @@ motor = [model.actuator(name).id for name in lift["joints"]]
 most = model.actuator_ctrlrange[:, 1]
 
 worst = {k: 0.0 for k in ("position", "turn", "velocity", "spin", "joint", "rate", "reaction", "feedback", "saturated")}
-impulses = np.zeros((2, len(lift["legs"]), 3))
+impulses = np.zeros((len(landings), len(lift["legs"]), 3))
 settled = 0.0
 
 
@@ -107,33 +114,33 @@ def note(name, error):
     worst[name] = max(worst[name], float(np.max(np.abs(error))))
 
 
-# The last steps, after the step's own end, are the second impact.
-count = round((ends[1] + SETTLED * step) / step)
+# The last steps, after the step's own end, are the last impact.
+count = round((ends[-1] + SETTLED * step) / step)
 for n in range(count):
     t = n * step
     phase = int(np.searchsorted(ends, t, side="right"))
-    half, time, ahead = (phase, t, 0.0) if phase < 2 else (0, t - ends[1], lift["travel"])
+    own, time, ahead = (phase, t, 0.0) if phase < number else (0, t - ends[-1], lift["travel"])
     for p, _, name in holds:
         data.eq_active[model.equality(name).id] = p == phase
     q, qd = data.qpos[position], data.qvel[rate]
-    feedback = kp * (at("q", half, time) - q) + kd * (at("qd", half, time) - qd)
+    feedback = kp * (at("q", own, time) - q) + kd * (at("qd", own, time) - qd)
     ahead = np.array([ahead, 0, 0])
     since = t - (ends[phase - 1] if phase else 0.0)
-    after_impact = phase > 0 and since < SETTLED * step
+    after_impact = phase in landings and since < SETTLED * step
     if after_impact:
         # Torques that are finite do nothing in an impact, but joints that jump must not call for enormous ones.
         feedback[:] = 0
-    torque = at("torque", half, time) + feedback
+    torque = at("torque", own, time) + feedback
     data.ctrl[motor] = torque
     note("saturated", np.maximum(np.abs(torque) - most[motor], 0))
     if not after_impact:
         note("feedback", feedback)
-        note("joint", at("q", half, time) - q)
-        note("rate", at("qd", half, time) - qd)
-        note("position", data.qpos[:3] - at("position", half, time) - ahead)
-        note("velocity", data.qvel[:3] - at("velocity", half, time))
-        note("spin", data.qvel[3:6] - at("omega", half, time))
-        k = int(np.argmin(np.abs(column["t"] - time) + 10 * (halves != half)))
+        note("joint", at("q", own, time) - q)
+        note("rate", at("qd", own, time) - qd)
+        note("position", data.qpos[:3] - at("position", own, time) - ahead)
+        note("velocity", data.qvel[:3] - at("velocity", own, time))
+        note("spin", data.qvel[3:6] - at("omega", own, time))
+        k = int(np.argmin(np.abs(column["t"] - time) + 10 * (phases != own)))
         if abs(column["t"][k] - time) < step:
             turn = np.zeros(3)
             mujoco.mju_subQuat(turn, data.qpos[3:7], quaternions[k])
@@ -145,22 +152,22 @@ for n in range(count):
             rows = np.flatnonzero((data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY) & (data.efc_id == model.equality(name).id))
             forces[lift["legs"].index(leg)] = data.efc_force[rows]
     if after_impact:
-        impulses[phase - 1] += forces * step
+        impulses[landings.index(phase)] += forces * step
     elif since > SETTLED * step:
-        note("reaction", forces - at("force", half, time))
+        note("reaction", forces - at("force", own, time))
 
 expected = np.array([upright(i["impulse"]) for i in lift["impacts"]])
 # During an impact the reactions of the support that begins act too.
 window = SETTLED * step
-support = np.array([at("force", 1, ends[0] + window / 2), at("force", 0, window / 2)]) * window
-after = {k: np.array(lift["impacts"][1]["after"][k]) for k in ("velocity", "omega", "qd")}
+begins = [(p, ends[p - 1]) if p < number else (0, 0.0) for p in landings]
+support = np.array([at("force", p, begin + window / 2) for p, begin in begins]) * window
 answer = {
     **worst,
     "weight": float(sum(model.body_mass) * np.linalg.norm(model.opt.gravity)),
     "mass": float(sum(model.body_mass)),
     "impulse": float(np.abs(impulses - support - expected).max()),
     "largest_impulse": float(np.abs(expected).max()),
-    "after": float(np.abs(data.qvel[rate] - at("qd", 0, count * step - ends[1])).max()),
+    "after": float(np.abs(data.qvel[rate] - at("qd", 0, count * step - ends[-1])).max()),
     "steps": count,
 }
 json.dump(answer, sys.stdout)

@@ -49,6 +49,8 @@ pub struct Moment {
     pub transition: Transition,
     /// Platform's mass centre, its velocity and acceleration; m, m/s, m/s².
     pub platform: [Point; 3],
+    /// Mass centre of the robot and its velocity; m, m/s. In flight a parabola.
+    pub centre: [Point; 2],
     /// Coordinates q of the gait, with rates and accelerations; rad, rad/s, rad/s².
     pub q: Vec<f64>,
     pub qd: Vec<f64>,
@@ -202,6 +204,11 @@ impl Role<'_> {
         let mut inverse = shape.zeros();
         self.gait.inverse(mode, &q, &qd, &prescribed, &mut inverse);
         let plain = Role { gait: self.gait, mirrored: false };
+        let platform = add(origin, self.point(&sample.platform));
+        let centre_shape = &d.shapes.centre_of_mass;
+        let mut centre = centre_shape.zeros();
+        let (x, xd) = ([&platform[..nc], &q].concat(), [&velocity[..], &qd].concat());
+        self.gait.centre_of_mass(&x, &xd, &mut centre);
         let force = match y.components() {
             0 => [0.0; 3],
             components => self.point(&sample.quantities[y.force(0)..][..components]),
@@ -212,11 +219,8 @@ impl Role<'_> {
             share: sample.share,
             mode,
             transition: Transition::Touchdown(0),
-            platform: [
-                add(origin, self.point(&sample.platform)),
-                plain.point(&velocity),
-                plain.point(&shape.xdd.of(&inverse)[..nc]),
-            ],
+            platform: [platform, plain.point(&velocity), plain.point(&shape.xdd.of(&inverse)[..nc])],
+            centre: [centre_shape.position, centre_shape.velocity].map(|block| plain.point(block.of(&centre))),
             torque: self.renamed(&sample.quantities[y.torque(0)..][..nj]),
             force,
             feet: self.feet(sample, mode, origin),

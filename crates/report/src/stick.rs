@@ -16,10 +16,11 @@ const SMALL: f64 = 11.0;
 pub fn figures(s: &Subject) -> Vec<Figure> {
     let side = View { horizontal: [1.0, 0.0, 0.0], vertical: [0.0, 1.0, 0.0], axis: "Xf" };
     let caption = format!(
-        "One step in {} poses at equal times. Blue: virtual leg 1 ({}); orange: virtual leg 2 ({}). Dotted: the feet's paths and the platform's mass centre.",
+        "One step in {} poses at equal times. Blue: virtual leg 1 ({}); orange: virtual leg 2 ({}). Dotted: the feet's paths and the platform's mass centre. Dashed: the robot's mass centre{}.",
         2 * POSES,
         s.leg_name(0),
-        s.leg_name(1)
+        s.leg_name(1),
+        if s.description().flies() { ", in flight on a parabola" } else { "" }
     );
     let mut figures = vec![Figure::drawing("sticks", "Stick diagram", side.draw(s, 640.0), caption)];
     if s.description().lateral {
@@ -65,7 +66,7 @@ impl View {
         let all: Vec<Xy> = poses
             .iter()
             .flat_map(|m| chains(m).concat())
-            .chain(poses.iter().map(|m| self.project(m.platform[0])))
+            .chain(poses.iter().flat_map(|m| [m.platform[0], m.centre[0]]).map(|p| self.project(p)))
             .collect();
         let bounds = |k: usize| {
             all.iter().map(|p| p[k]).fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)])
@@ -84,14 +85,14 @@ impl View {
         let mut scene = Scene::new(width, height);
         self.axes(&mut scene, x, y);
 
-        let path = |scene: &mut Scene, points: Vec<Point>, ink| {
+        let path = |scene: &mut Scene, points: Vec<Point>, ink, dash| {
             let points: Vec<Xy> = points.into_iter().map(|p| place(self.project(p))).collect();
-            scene.line(&points, Pen::new(ink, 1.4).dash(Dash::Dotted));
+            scene.line(&points, Pen::new(ink, 1.4).dash(dash));
         };
         for (k, phase) in s.walk.phases.iter().enumerate() {
             for leg in phase.mode.swinging() {
                 let foot = s.walk.moments.iter().filter(|m| m.phase == k).map(|m| m.feet[leg]).collect();
-                path(&mut scene, foot, Ink::Leg(leg));
+                path(&mut scene, foot, Ink::Leg(leg), Dash::Dotted);
             }
         }
         let mut order: Vec<usize> = (0..poses.len()).collect();
@@ -109,7 +110,8 @@ impl View {
                 scene.line(&points, Pen::new(Ink::Leg(leg), weight).opacity(opacity));
             }
         }
-        path(&mut scene, s.walk.moments.iter().map(|m| m.platform[0]).collect(), Ink::Text);
+        path(&mut scene, s.walk.moments.iter().map(|m| m.platform[0]).collect(), Ink::Text, Dash::Dotted);
+        path(&mut scene, s.walk.moments.iter().map(|m| m.centre[0]).collect(), Ink::Text, Dash::Dashed);
         scene
     }
 
