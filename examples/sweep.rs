@@ -1,15 +1,16 @@
 //! What a trot costs at several speeds, each optimum starting from the one before: `cargo run --release --example sweep`.
 
+use piaffe::Task;
 use piaffe::cycle::theta;
 use piaffe::gaits::trot::Trot;
 use piaffe::motion::Criterion;
-use piaffe::search::multi_start::{Settings, search_from};
+use piaffe::search::multi_start::{Expected, Settings, search_from};
 
 fn main() {
     let mut before: Vec<Vec<f64>> = Vec::new();
     for speed in [0.3, 0.45, 0.6, 0.75, 0.9] {
-        let found =
-            search_from(&Trot, Criterion::Energy, speed, &Settings { starts: Some(2), seed: 1 }, &before, &|_| {});
+        let task = Task { gait: &Trot, criterion: Criterion::Energy, speed };
+        let found = search_from(&task, &Settings { starts: Some(2), seed: 1 }, &before, Expected::Theirs, &|_| {});
         let Some(best) = found.optima.first() else {
             println!("{speed} m/s: no trot");
             continue;

@@ -2,7 +2,7 @@
 
 use crate::result::GaitResult;
 use crate::search::local::Task;
-use crate::search::multi_start::{Settings, search_from};
+use crate::search::multi_start::{Expected, Settings, search_from};
 use piaffe_model::Gait;
 use piaffe_model::motion::Criterion;
 use std::time::Instant;
@@ -56,7 +56,7 @@ impl<'a> Task<'a> {
     pub fn search(&self, settings: &Settings, from: &[Vec<f64>], done: &(dyn Fn(usize) + Sync)) -> GaitResult {
         let Task { gait, criterion, speed } = *self;
         let started = Instant::now();
-        let found = search_from(gait, criterion, speed, settings, from, done);
+        let found = search_from(self, settings, from, Expected::Nothing, done);
         GaitResult::new(gait, criterion, speed, &found, settings.seed, || started.elapsed().as_secs_f64())
     }
 }

@@ -17,7 +17,7 @@ pub fn figures(s: &Subject) -> Vec<Figure> {
     let side = View { horizontal: [1.0, 0.0, 0.0], vertical: [0.0, 1.0, 0.0], axis: "Xf" };
     let caption = format!(
         "One step in {} poses at equal times. Blue: virtual leg 1 ({}); orange: virtual leg 2 ({}). Dotted: the feet's paths and the platform's mass centre. Dashed: the robot's mass centre{}.",
-        2 * POSES,
+        s.walk.phases.len() * POSES,
         s.leg_name(0),
         s.leg_name(1),
         if s.description().flies() { ", in flight on a parabola" } else { "" }

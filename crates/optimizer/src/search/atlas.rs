@@ -6,10 +6,10 @@
 
 use super::journal::{Journal, common, step};
 use super::local::{Local, Task};
-use super::multi_start::{Settings, search_from};
+use super::multi_start::{Expected, Settings, search_from};
 use super::relative::related;
 use crate::cycle::theta;
-use crate::result::GaitResult;
+use crate::result::{GaitResult, Status};
 use piaffe_model::motion::Criterion;
 use piaffe_model::{Description, Gait};
 use piaffe_sqp::Control;
@@ -39,7 +39,17 @@ pub fn sweep(
             let mut neighbours: Vec<Vec<f64>> = Vec::new();
             neighbours.extend(k.checked_sub(1).and_then(|before| lines[c][before].theta()));
             neighbours.extend(lines[..c].iter().filter_map(|line| line[k].theta()));
-            let (result, fresh) = search_at(gait, criterion, speed, settings, &neighbours, journal);
+            let before = k.checked_sub(1).map(|before| &lines[c][before]);
+            let no_motion = |r: &GaitResult| r.status == Status::Infeasible;
+            let expected = match before {
+                // Whatever it is to cost: that the other criterion has none is said of motions.
+                _ if lines[..c].iter().any(|line| no_motion(&line[k])) => Expected::NoMotion,
+                Some(before) if no_motion(before) => Expected::NoMotion,
+                Some(before) if before.is_optimal() => Expected::Theirs,
+                _ => Expected::Nothing,
+            };
+            let task = Task { gait, criterion, speed };
+            let (result, fresh) = search_at(&task, settings, &neighbours, expected, journal);
             if fresh {
                 journal.point(&result);
             }
@@ -127,17 +137,17 @@ fn take_over(
 
 /// Searches at one speed, from these neighbours too; tells whether the result is new to the journal.
 pub fn search_at(
-    gait: &dyn Gait,
-    criterion: Criterion,
-    speed: f64,
+    task: &Task,
     settings: &Settings,
     neighbours: &[Vec<f64>],
+    expected: Expected,
     journal: &dyn Journal,
 ) -> (GaitResult, bool) {
+    let Task { gait, criterion, speed } = *task;
     let name = format!("{} {} {speed} searched", gait.description().key, criterion.name());
-    step(journal, &name, &(common(gait, settings), neighbours), || {
+    step(journal, &name, &(common(gait, settings), neighbours, expected), || {
         let started = Instant::now();
-        let found = search_from(gait, criterion, speed, settings, neighbours, &|_| {});
+        let found = search_from(task, settings, neighbours, expected, &|_| {});
         GaitResult::new(gait, criterion, speed, &found, settings.seed, || started.elapsed().as_secs_f64())
     })
 }

@@ -4,7 +4,8 @@
 
 use super::atlas::search_at;
 use super::journal::Journal;
-use super::multi_start::Settings;
+use super::local::Task;
+use super::multi_start::{Expected, Settings};
 use crate::result::GaitResult;
 use piaffe_model::Gait;
 use piaffe_model::motion::Criterion;
@@ -146,7 +147,8 @@ fn between(
     let from: Vec<Vec<f64>> = ends.into_iter().filter_map(GaitResult::theta).collect();
     // The ends come from wide searches: their basins are what counts.
     let settings = Settings { starts: Some(1), ..settings.clone() };
-    let (result, _) = search_at(gait, ends[0].criterion, speed, &settings, &from, journal);
+    let task = Task { gait, criterion: ends[0].criterion, speed };
+    let (result, _) = search_at(&task, &settings, &from, Expected::Theirs, journal);
     result.is_optimal().then_some(result)
 }
 

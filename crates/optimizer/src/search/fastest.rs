@@ -3,7 +3,7 @@
 use super::atlas::search_at;
 use super::journal::{Journal, common, step};
 use super::local::{Conflict, Local, Task};
-use super::multi_start::{Settings, search, start};
+use super::multi_start::{Expected, Settings, search, start};
 use crate::result::GaitResult;
 use piaffe_model::Gait;
 use piaffe_model::motion::Criterion;
@@ -107,7 +107,8 @@ impl MaximumSpeed {
     }
 
     fn optimum(&self, gait: &dyn Gait, criterion: Criterion, settings: &Settings, journal: &dyn Journal) -> GaitResult {
-        search_at(gait, criterion, self.speed, settings, std::slice::from_ref(&self.theta), journal).0
+        let task = Task { gait, criterion, speed: self.speed };
+        search_at(&task, settings, std::slice::from_ref(&self.theta), Expected::Nothing, journal).0
     }
 }
 

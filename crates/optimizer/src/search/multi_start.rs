@@ -16,6 +16,10 @@ const SAME_COST: f64 = 1e-5;
 /// Starts that run side by side; what they found decides whether more do.
 const BATCH: usize = 8;
 
+/// As many at first where they only confirm what neighbours let expect, and how many of them must end in the same optimum.
+const CONFIRMING: usize = 4;
+const AGREEING: usize = 2;
+
 /// Walks drawn for each random start of the first batch.
 const DRAWS: usize = 3;
 
@@ -38,6 +42,16 @@ impl Default for Settings {
     fn default() -> Self {
         Settings { starts: None, seed: 1 }
     }
+}
+
+/// What the answers to neighbouring problems let expect of this one: agreement with them is evidence too.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Expected {
+    Nothing,
+    /// The optimum to which theirs lead, and no other.
+    Theirs,
+    /// No motion, as with one of them.
+    NoMotion,
 }
 
 /// What a search found.
@@ -74,42 +88,48 @@ pub fn search(
     settings: &Settings,
     done: &(dyn Fn(usize) + Sync),
 ) -> Found {
-    search_from(gait, criterion, speed, settings, &[], done)
+    search_from(&Task { gait, criterion, speed }, settings, &[], Expected::Nothing, done)
 }
 
-/// The same, with further starts before those of the settings: optima of neighbouring problems, say.
+/// The same, with further starts before those of the settings: optima of neighbouring problems, say. Where the settings leave the
+/// number of starts open, fewer of them confirm what is `expected` than answer without it.
 pub fn search_from(
-    gait: &dyn Gait,
-    criterion: Criterion,
-    speed: f64,
+    task: &Task,
     settings: &Settings,
     neighbours: &[Vec<f64>],
+    expected: Expected,
     done: &(dyn Fn(usize) + Sync),
 ) -> Found {
-    let task = Task { gait, criterion, speed };
+    let Task { gait, criterion, speed } = *task;
     let scale = Cycle::new(gait, criterion, speed).scale();
     let follow = |theta: &Vec<f64>| End { local: task.follow(theta, &mut |_| Control::Continue), informed: true };
     let mut ends: Vec<End> = neighbours.par_iter().map(follow).collect();
     let most = settings.starts.unwrap_or(MOST).max(1);
-    for first in (0..most).step_by(BATCH) {
+    let mut first = 0;
+    while first < most {
         let so_far = collect(criterion, &scale, &ends);
-        if settings.starts.is_none() && so_far.effort.is_enough() {
+        let confirmed =
+            || is_confirmed(expected, &so_far, &ends[..neighbours.len()], |a, b| same(criterion, &scale, a, b));
+        if settings.starts.is_none() && (so_far.effort.is_enough() || confirmed()) {
             break;
         }
         let best = so_far.optima.first().filter(|_| first > 0);
-        let batch = (first..most.min(first + BATCH)).into_par_iter().map(|k| {
-            let end = begin(&task, settings.seed, k, best);
+        let confirming = first == 0 && expected != Expected::Nothing;
+        let next = most.min(first + if confirming { CONFIRMING } else { BATCH });
+        let batch = (first..next).into_par_iter().map(|k| {
+            let end = begin(task, settings.seed, k, best);
             done(k);
             end
         });
         ends.par_extend(batch);
+        first = next;
     }
     let found = collect(criterion, &scale, &ends);
     if !found.optima.is_empty() {
         return found;
     }
     // Descents may fail where there are motions: from these they have no limit to find their way to.
-    let known = motions(&task, settings.seed, found.effort.starts);
+    let known = motions(task, settings.seed, found.effort.starts);
     let thetas: Vec<Vec<f64>> = known.iter().map(|local| local.theta.clone()).collect();
     ends.par_extend(thetas.par_iter().map(follow));
     let mut found = collect(criterion, &scale, &ends);
@@ -120,6 +140,22 @@ pub fn search_from(
         found.motion = known.into_iter().min_by(cheapest).or_else(lost);
     }
     found
+}
+
+/// Whether a few starts of its own have confirmed what was expected of a search; `carried` are the ends of what neighbours gave.
+fn is_confirmed(expected: Expected, so_far: &Found, carried: &[End], same: impl Fn(&Local, &Local) -> bool) -> bool {
+    let Effort { starts, successes, .. } = so_far.effort;
+    let asked = starts >= CONFIRMING;
+    match expected {
+        Expected::Nothing => false,
+        Expected::NoMotion => asked && successes == 0 && so_far.optima.is_empty(),
+        Expected::Theirs => {
+            let theirs =
+                |best: &Local| carried.iter().any(|end| end.local.status.is_optimal() && same(&end.local, best));
+            // Where there are several optima, a few starts do not tell which is the best.
+            asked && successes >= AGREEING && matches!(&so_far.optima[..], [only] if theirs(&only.local))
+        }
+    }
 }
 
 /// The k-th start of a seed, and where it leads.
