@@ -4,6 +4,7 @@
 
 mod built;
 mod check;
+mod diff;
 mod digits;
 mod document;
 mod dynamics;
@@ -245,6 +246,24 @@ enum Command {
         #[arg(long, default_value_t = 1)]
         seed: u64,
     },
+    /// Set two results side by side: numbers that differ, costs, limits, and how much of the difference the numbers explain.
+    ///
+    /// What both state is derived anew first. The slopes of the least cost, times the changes of the numbers, predict the cost's
+    /// difference to first order.
+    #[command(
+        after_help = "Examples:\n  piaffe diff light.json heavy.json\n  piaffe diff trot.json amble.json --json -"
+    )]
+    Diff {
+        /// A result as JSON.
+        #[arg(value_name = "A")]
+        a: PathBuf,
+        /// Another one.
+        #[arg(value_name = "B")]
+        b: PathBuf,
+        /// Write all of it as JSON; `-` is standard output.
+        #[arg(long, value_name = "FILE|-")]
+        json: Option<String>,
+    },
     /// Answer many robots that differ in some numbers: a table with a row for each robot, gait, criterion and speed.
     ///
     /// Numbers are named as for --set. Every row is written as it is found; a study that was interrupted goes on where it
@@ -391,6 +410,7 @@ fn answer(arguments: Arguments) -> anyhow::Result<bool> {
             let gaits = if gait.is_empty() { robots::first()? } else { named()? };
             sweep::run(&gaits, real_legs, &criteria(&criterion), &speeds, &folder, &settings(starts, seed))
         }
+        Some(Command::Diff { a, b, json }) => diff::run(&a, &b, json.as_deref()),
         Some(Command::Study(arguments)) => study::run(arguments),
         Some(Command::Merge { parts, folder }) => merge::run(&parts, &folder),
     }

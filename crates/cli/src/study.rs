@@ -2,11 +2,13 @@
 
 use super::digits::decimal;
 use super::journal::Folder;
-use super::{criteria, gait_names, input, output, robots, sweep, whole};
+use super::{criteria, gait_names, input, output, report, robots, sweep, whole};
 use anyhow::{Context, bail};
 use clap::builder::PossibleValuesParser;
 use indicatif::{ProgressBar, ProgressStyle};
 use piaffe_optimizer::search::journal::Journal;
+use piaffe_report::space::{Space, Spot};
+use piaffe_report::{Extremes, Record, Report};
 use piaffe_study::{Answers, Beyond, Column, Designs, Over, Question, Row, Search, Shard, Study, Vary, table};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -60,6 +62,9 @@ pub struct Asked {
 
 /// Name of it in the folder.
 pub const ASKED: &str = "study.json";
+
+/// The folder in it with the walks that the page shows, as results.
+const WALKS: &str = "walks";
 
 /// The step of a journal that answers a point.
 pub fn step(fingerprint: &str, point: usize) -> String {
@@ -143,8 +148,44 @@ pub fn write(study: &Study, shard: Shard, answers: &Answers, rows: &[Row], path:
     whole::write(&path.join("study.parquet"), &table::parquet(&columns, rows).context("cannot write the table")?)?;
     output::quiet_when_closed(tell(study, rows))?;
     output::say!("rows in {}", path.join("study.csv").display());
-    let _ = (shard, answers);
+    if shard == Shard::WHOLE {
+        page(study, answers, rows, path)?;
+    }
     Ok(rows.iter().any(|row| row.optimum.is_some()))
+}
+
+/// Writes the page of a study, with the walks that are worth showing as results of their own.
+fn page(study: &Study, answers: &Answers, rows: &[Row], path: &Path) -> anyhow::Result<()> {
+    let spot = |row: &Row| Spot {
+        point: row.point,
+        design: row.design,
+        numbers: row.numbers.clone(),
+        gait: row.gait.clone(),
+        criterion: row.criterion,
+        speed: row.speed,
+        costs: row.optimum.as_ref().map(|optimum| optimum.costs),
+    };
+    let numbers = study.designs.names().to_vec();
+    let space = Space { robot: study.robot.name().into(), numbers, spots: rows.iter().map(spot).collect() };
+    let walks = space.worth_showing();
+    // Each by its own specification, as if it had been asked for alone.
+    let results: Vec<_> = walks.iter().map(|point| answers.result(*point)).collect::<Result<_, _>>()?;
+    let folder = path.join(WALKS);
+    std::fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", input::name(&folder)))?;
+    whole::tidy(&folder);
+    let mut records = Vec::new();
+    for (point, (result, gait)) in walks.iter().zip(&results) {
+        output::write_json(&folder.join(format!("{point}-{}", result.file_name())), result)?;
+        let design = format!("design {}", study.point(*point).design);
+        records.push(Record::issued(result.clone(), gait).named(Some(design)));
+    }
+    if !records.iter().any(Record::is_confirmed) {
+        output::say!("no page: there is no walk to show");
+        return Ok(());
+    }
+    let report = Report::new(records, Extremes::default(), None)?.of_space(space);
+    output::say!("To be seen in {}", report::write_report(&report, path)?.display());
+    Ok(())
 }
 
 /// What is best of each gait and criterion at each speed.

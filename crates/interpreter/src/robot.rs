@@ -73,6 +73,10 @@ impl Robot {
         &self.files
     }
 
+    pub fn name(&self) -> &str {
+        &self.specified.robot.name
+    }
+
     /// Names of its gaits, behind that of its module if it has one.
     pub fn gaits(&self) -> Vec<String> {
         self.specified.gaits.iter().map(|gait| self.key(&gait.name)).collect()

@@ -14,10 +14,7 @@ pub struct Question {
     pub version: String,
     /// [`Study::fingerprint`].
     pub fingerprint: String,
-    /// Module of the robot's gaits.
-    pub module: String,
-    pub robot: File,
-    pub gait_files: Vec<File>,
+    pub specification: Files,
     /// What is varied, and each design's numbers.
     pub numbers: Vec<String>,
     pub designs: Vec<Vec<f64>>,
@@ -28,6 +25,15 @@ pub struct Question {
     pub starts: Option<usize>,
     pub seed: u64,
     pub beyond: Vec<Beyond>,
+}
+
+/// What the base robot is read from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Files {
+    /// Of its gaits.
+    pub module: String,
+    pub robot: File,
+    pub gaits: Vec<File>,
 }
 
 /// A file of the specification.
@@ -57,9 +63,11 @@ impl From<&Study> for Question {
         Question {
             version: env!("CARGO_PKG_VERSION").into(),
             fingerprint: study.fingerprint(),
-            module: files.module,
-            robot: file(files.robot),
-            gait_files: files.gaits.into_iter().map(file).collect(),
+            specification: Files {
+                module: files.module,
+                robot: file(files.robot),
+                gaits: files.gaits.into_iter().map(file).collect(),
+            },
             numbers: study.designs.names().to_vec(),
             designs: (0..study.designs.count()).map(|k| study.designs.numbers(k).to_vec()).collect(),
             gaits: study.gaits.clone(),
@@ -83,11 +91,8 @@ impl Question {
             return Err(Unreadable::Version { found: self.version.clone(), own });
         }
         let file = |file: &File| SpecFile { path: file.name.clone(), text: file.text.clone() };
-        let files = RobotFiles {
-            module: self.module.clone(),
-            robot: file(&self.robot),
-            gaits: self.gait_files.iter().map(file).collect(),
-        };
+        let Files { module, robot, gaits } = &self.specification;
+        let files = RobotFiles { module: module.clone(), robot: file(robot), gaits: gaits.iter().map(file).collect() };
         let study = Study {
             robot: Robot::new(files)?,
             designs: Designs::listed(self.numbers.clone(), &self.designs).map_err(Unreadable::Designs)?,
