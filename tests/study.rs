@@ -65,7 +65,8 @@ fn rows(folder: &Path) -> Vec<BTreeMap<String, String>> {
     lines.map(|cells| names.iter().cloned().zip(cells).collect()).collect()
 }
 
-const ASKED: &str = "study trot --speed 0.6 --vary links.thigh.mass=1.2..2.0 --vary limits.friction=0.5..1.0 --sample 5 --robot";
+const ASKED: &str =
+    "study trot --speed 0.6 --vary links.thigh.mass=1.2..2.0 --vary limits.friction=0.5..1.0 --sample 5 --robot";
 
 #[test]
 fn parts_interruptions_and_threads_change_no_byte() {
@@ -114,14 +115,18 @@ fn a_row_is_what_optimize_gives_with_the_same_numbers() {
     assert_eq!(rows.len(), 4);
     for row in rows {
         let (mass, speed) = (&row["links.thigh.mass"], &row["speed"]);
-        let asked = format!("optimize trot --criterion torque --speed {speed} --set links.thigh.mass={mass} --json - --robot");
+        let asked =
+            format!("optimize trot --criterion torque --speed {speed} --set links.thigh.mass={mass} --json - --robot");
         let alone: Value = serde_json::from_str(&succeeds(folder.path(), &format!("{asked} {SHIPPED}"))).unwrap();
         let near = |a: &str, b: f64| (a.parse::<f64>().unwrap() - b).abs() <= 1e-6 * b.abs();
         assert!(near(&row["cost"], alone["cost"].as_f64().unwrap()), "{row:?} {}", alone["cost"]);
         assert!(near(&row["duration.1"], alone["durations"][0].as_f64().unwrap()), "{row:?}");
         let slopes = alone["sensitivities"]["slopes"].as_array().unwrap();
         let of_mass = slopes.iter().find(|slope| slope["parameter"] == "links.thigh.mass").unwrap();
-        assert!((row["slope.links.thigh.mass"].parse::<f64>().unwrap() / of_mass["slope"].as_f64().unwrap() - 1.0).abs() < 1e-3);
+        assert!(
+            (row["slope.links.thigh.mass"].parse::<f64>().unwrap() / of_mass["slope"].as_f64().unwrap() - 1.0).abs()
+                < 1e-3
+        );
     }
 }
 
@@ -147,7 +152,8 @@ fn a_robot_that_nobody_tuned_is_studied() {
 fn everything_wrong_with_a_question_is_told_before_anything_is_computed() {
     let folder = tempdir().unwrap();
     let asked = "study trot --speed 0.6 --vary links.thig.mass=1,2 --vary links.shin.lenght=0.1..0.2 --out bad --robot";
-    let words = ["did you mean `links.thigh.mass`", "did you mean `links.shin.length`", "has no values between 0.1 and 0.2"];
+    let words =
+        ["did you mean `links.thigh.mass`", "did you mean `links.shin.length`", "has no values between 0.1 and 0.2"];
     fails(folder.path(), &format!("{asked} {SHIPPED}"), &words);
     assert!(!folder.path().join("bad").exists());
     std::fs::write(folder.path().join("table.csv"), "links.thigh.mass,gravty\n1.5,9.81\nheavy,9.81\n").unwrap();
@@ -164,7 +170,8 @@ fn slopes_explain_the_difference_of_two_robots() {
         let set = format!("--set links.thigh.mass={mass} --robot {SHIPPED}");
         succeeds(folder.path(), &format!("optimize trot --speed 0.6 {set} --json {name}.json"));
     }
-    let difference: Value = serde_json::from_str(&succeeds(folder.path(), "diff light.json heavy.json --json -")).unwrap();
+    let difference: Value =
+        serde_json::from_str(&succeeds(folder.path(), "diff light.json heavy.json --json -")).unwrap();
     let prediction = &difference["prediction"];
     let number = |key: &str| prediction[key].as_f64().unwrap();
     assert_eq!(difference["numbers"][0]["name"], "links.thigh.mass");

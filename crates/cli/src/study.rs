@@ -26,7 +26,7 @@ pub struct Arguments {
     #[arg(long, value_parser = PossibleValuesParser::new(["energy", "torque", "all"]), default_value = "all")]
     criterion: Vec<String>,
     /// A number of the specification and its values: NAME=FROM..TO:STEP or NAME=A,B,C; may be given several times, for every
-    /// combination. Several numbers at once with braces: links.{left,right}_shin.mass=1.0..2.0:0.1.
+    /// combination. Several numbers at once with braces: 'links.{left,right}_shin.mass=1.0..2.0:0.1'.
     #[arg(long, value_name = "NAME=VALUES")]
     vary: Vec<Vary>,
     /// So many robots spread evenly over the intervals of --vary, NAME=FROM..TO, instead of every combination.

@@ -5,6 +5,7 @@ use super::figure::Figure;
 use super::font::Weight;
 use super::marks::marks;
 use super::number::{digits, given, scientific, significant};
+use super::space::Space;
 use super::subject::{Subject, spaced};
 use super::words::meaning;
 use super::{Record, Report, Standing};
@@ -160,7 +161,7 @@ fn overview(report: &Report) -> Markup {
         section #overview {
             h2 { "Overview" }
             (refused(report))
-            @if let Some((_, figures)) = &report.space { (gallery("overview", figures)) }
+            @if let Some((space, figures)) = &report.space { (of_space(space, figures)) }
             @if let Some((atlas, figures)) = &report.atlas {
                 (gallery("overview", figures))
                 (script("overview", json!({ "figures": interactive(figures) })))
@@ -170,6 +171,16 @@ fn overview(report: &Report) -> Markup {
             (table(report))
             (compare::legend())
         }
+    }
+}
+
+/// The robots of a study: lines across axes, then what is better than all else, and which robots' walks follow.
+fn of_space(space: &Space, figures: &[Figure]) -> Markup {
+    html! {
+        @for wide in [true, false] {
+            div.gallery { @for f in figures.iter().filter(|f| f.wide == wide) { (drawing("overview", f)) } }
+        }
+        ul { @for robot in space.shown() { li { (robot) "." } } }
     }
 }
 

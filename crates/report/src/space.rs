@@ -3,6 +3,7 @@
 use super::figure::Figure;
 use super::font::Weight;
 use super::ink::Ink;
+use super::number::significant;
 use super::plot::{Axis, Curve, Plot};
 use super::scale::{Scale, domain};
 use super::scene::{Anchor, Pen, Scene, Xy};
@@ -84,6 +85,27 @@ impl Space {
         points.retain(|point| known.insert(*point));
         points.truncate(WALKS);
         points
+    }
+
+    /// The robots whose walks are worth showing, each with its numbers.
+    pub(super) fn shown(&self) -> Vec<String> {
+        let points = self.worth_showing();
+        let mut designs: Vec<&Spot> = Vec::new();
+        for spot in points.iter().filter_map(|point| self.spots.iter().find(|spot| spot.point == *point)) {
+            if designs.iter().all(|known| known.design != spot.design) {
+                designs.push(spot);
+            }
+        }
+        let number = |(name, value): (&String, &f64)| format!("{name} = {}", significant(*value, 5));
+        let words = |spot: &&Spot| {
+            let numbers: Vec<String> = self.numbers.iter().zip(&spot.numbers).map(number).collect();
+            format!(
+                "Design {}: {}",
+                spot.design,
+                if numbers.is_empty() { "as specified".into() } else { numbers.join(", ") }
+            )
+        };
+        designs.iter().map(words).collect()
     }
 
     /// All figures, in the order in which they are read.
@@ -206,14 +228,15 @@ impl Space {
         if spots.all(|[x, _]| x == one) {
             return None;
         }
-        let title = format!("{}, least {} at {} m/s", spaced(&first.gait), first.criterion.name(), first.speed);
+        let title = format!("{}, least {}: {name}", spaced(&first.gait), first.criterion.name());
         let mut plot = Plot::new(title, Axis::new("", ""), Axis::new("", first.criterion.unit()));
         plot.curves.push(scattered("a robot each".into(), Ink::gait(0), group.iter().filter_map(|spot| at(spot))));
         let better = front(group, at).into_iter().map(|(_, at)| at).collect();
         plot.curves.push(Curve::new("front", Ink::Text, vec![better]));
         let [gait, number] = [&first.gait, name].map(|text| text.replace(['/', '{', '}', ','], "-"));
         let file = format!("cost-{gait}-{}-{}-{number}", first.criterion.name(), first.speed);
-        let caption = format!("Cost over {name}. Front: no other robot costs less with as little of it.");
+        let caption =
+            format!("Cost at {} m/s over {name}. Front: no other robot costs less with as little of it.", first.speed);
         Some(Figure { data: None, ..Figure::plot(&file, &plot, caption) })
     }
 }

@@ -134,7 +134,7 @@ impl<'s> Answers<'s> {
             cycle_error: receipt.cycle_error,
             kkt_residual,
             least: receipt.least,
-            active: receipt.active.into_iter().map(|finding| finding.constraint).collect(),
+            active: once(receipt.active.into_iter().map(|finding| finding.constraint)),
             starts: found.effort.starts,
             successes: found.effort.successes,
             optima: found.effort.optima,
@@ -197,6 +197,17 @@ fn member(
         // What cannot be derived for all may be for one.
         _ => robot.gait(gait),
     }
+}
+
+/// Names in their order, each once: what is active in several phases is named once.
+fn once(names: impl Iterator<Item = String>) -> Vec<String> {
+    let mut kept: Vec<String> = Vec::new();
+    for name in names {
+        if !kept.contains(&name) {
+            kept.push(name);
+        }
+    }
+    kept
 }
 
 /// What is wrong with a specification in a line; all of it is told where the robot is asked for alone.
