@@ -90,6 +90,19 @@ pub fn readback(file: &Path) -> anyhow::Result<Readback<'static>> {
     Ok(Readback::new(result, &[gait])?)
 }
 
+/// The one result in a file: of an optimum what was derived anew, of what is none what it states.
+///
+/// # Errors
+/// If it cannot be read, is of no gait that can be had, or states what its motion does not do.
+pub fn confirmed(file: &Path) -> anyhow::Result<GaitResult> {
+    let result = read_result(file)?;
+    if !result.is_optimal() {
+        return Ok(result);
+    }
+    let gait = robots::of(&result).map_err(|why| anyhow!("{}: {why}", input::name(file)))?;
+    Ok(Readback::new(result, &[gait])?.result)
+}
+
 /// The files in a folder that may hold results: all JSON.
 ///
 /// # Errors

@@ -4,6 +4,7 @@
 
 mod built;
 mod check;
+mod diff;
 mod digits;
 mod document;
 mod dynamics;
@@ -15,11 +16,13 @@ mod journal;
 mod lift;
 mod main_job;
 mod manual;
+mod merge;
 mod model;
 mod optimize;
 mod output;
 mod report;
 mod robots;
+mod study;
 mod summary;
 mod sweep;
 mod verify;
@@ -244,6 +247,42 @@ enum Command {
         #[arg(long, default_value_t = 1)]
         seed: u64,
     },
+    /// Set two results side by side: numbers that differ, costs, limits, and how much of the difference the numbers explain.
+    ///
+    /// What both state is derived anew first. The slopes of the least cost, times the changes of the numbers, predict the cost's
+    /// difference to first order.
+    #[command(
+        after_help = "Examples:\n  piaffe diff light.json heavy.json\n  piaffe diff trot.json amble.json --json -"
+    )]
+    Diff {
+        /// A result as JSON.
+        #[arg(value_name = "A")]
+        a: PathBuf,
+        /// Another one.
+        #[arg(value_name = "B")]
+        b: PathBuf,
+        /// Write all of it as JSON; `-` is standard output.
+        #[arg(long, value_name = "FILE|-")]
+        json: Option<String>,
+    },
+    /// Answer many robots that differ in some numbers: a table with a row for each robot, gait, criterion and speed.
+    ///
+    /// Numbers are named as for --set. Every row is written as it is found; a study that was interrupted goes on where it
+    /// stopped. Every optimum is local: sought from the base robot's optima, and from starts that know nothing of them.
+    #[command(
+        after_help = "Examples:\n  piaffe study trot --speed 0.6 --vary links.thigh.mass=1.0..2.0:0.1\n  piaffe study trot --speed 0.6 --vary links.thigh.mass=1.0..2.0 --vary limits.friction=0.4..1.0 --sample 500\n  piaffe study --speed 0.4,0.6 --designs table.csv --shard 2/8 --out part2"
+    )]
+    Study(study::Arguments),
+    /// Put the parts of a study together that were answered with --shard.
+    #[command(after_help = "Example:\n  piaffe merge part1 part2 --out study")]
+    Merge {
+        /// Folders of the parts.
+        #[arg(required = true, value_name = "DIR")]
+        parts: Vec<PathBuf>,
+        /// Folder for the whole.
+        #[arg(long = "out", value_name = "DIR", default_value = "study")]
+        folder: PathBuf,
+    },
     /// Write the completions of a shell to standard output.
     #[command(after_help = "Example:\n  piaffe completions bash > ~/.local/share/bash-completion/completions/piaffe")]
     Completions { shell: clap_complete::Shell },
@@ -274,6 +313,8 @@ impl Arguments {
             Some(Command::Dynamics { gait, .. } | Command::Model { gait, .. } | Command::Optimize { gait, .. }) => {
                 robots::note_of([gait.as_str()]);
             }
+            Some(Command::Study(study)) if study.gaits.is_empty() => robots::note_of(first()),
+            Some(Command::Study(study)) => robots::note_of(study.gaits.iter().map(String::as_str)),
             Some(Command::Sweep { gait, .. }) if gait.is_empty() => robots::note_of(first()),
             Some(Command::Sweep { gait, .. }) => robots::note_of(gait.iter().map(String::as_str)),
             // Results carry their robots.
@@ -380,15 +421,22 @@ fn answer(arguments: Arguments) -> anyhow::Result<bool> {
                 names if names.iter().any(|name| name == ALL) => robots::first()?,
                 _ => named()?,
             };
-            let wanted = |c: &Criterion| criterion.iter().any(|w| w == "all" || w == c.name());
-            let criteria: Vec<Criterion> = Criterion::ALL.into_iter().filter(wanted).collect();
-            sweep::run(&gaits, real_legs, &criteria, &speeds, &folder, &settings(starts, seed))
+            sweep::run(&gaits, real_legs, &criteria(&criterion), &speeds, &folder, &settings(starts, seed))
         }
+        Some(Command::Diff { a, b, json }) => diff::run(&a, &b, json.as_deref()),
+        Some(Command::Study(arguments)) => study::run(arguments),
+        Some(Command::Merge { parts, folder }) => merge::run(&parts, &folder),
     }
 }
 
 fn settings(starts: Option<u32>, seed: u64) -> Settings {
     Settings { starts: starts.map(|n| n as usize), seed }
+}
+
+/// Those that are wanted by name, or all.
+fn criteria(wanted: &[String]) -> Vec<Criterion> {
+    let wanted = |c: &Criterion| wanted.iter().any(|w| w == "all" || w == c.name());
+    Criterion::ALL.into_iter().filter(wanted).collect()
 }
 
 fn criterion_names() -> PossibleValuesParser {

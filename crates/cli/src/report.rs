@@ -5,6 +5,7 @@ use super::{input, output, robots, whole};
 use anyhow::{Context, bail};
 use piaffe_optimizer::result::GaitResult;
 use piaffe_report::{Extremes, Record, Report};
+use piaffe_study::difference::changed;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -56,11 +57,12 @@ pub fn run(paths: &[PathBuf], detail: Option<f64>, out: &Path) -> anyhow::Result
     }
     // Gaits one after another: what is derived for one result is shared by all threads.
     let of_gaits: Vec<_> = different(all)?.into_iter().map(|result| (robots::of(&result), result)).collect();
-    let record = |(gait, result)| match gait {
-        Ok(gait) => Record::read(result, &[gait]),
-        Err(why) => Record::unreadable(result, why),
+    let names = designs(of_gaits.iter().map(|(_, result)| result));
+    let record = |((gait, result), name): ((Result<_, String>, GaitResult), Option<String>)| match gait {
+        Ok(gait) => Record::read(result, &[gait]).named(name),
+        Err(why) => Record::unreadable(result, why).named(name),
     };
-    let mut records: Vec<Record> = of_gaits.into_par_iter().map(record).collect();
+    let mut records: Vec<Record> = of_gaits.into_par_iter().zip(names).map(record).collect();
     let keys = robots::keys().unwrap_or_default();
     let place = |r: &GaitResult| keys.iter().position(|key| *key == r.gait);
     records.sort_by(|a, b| {
@@ -79,7 +81,11 @@ pub fn run(paths: &[PathBuf], detail: Option<f64>, out: &Path) -> anyhow::Result
 fn different(all: Vec<Stated>) -> anyhow::Result<Vec<GaitResult>> {
     let mut kept: Vec<Stated> = Vec::new();
     for stated in all {
-        match kept.iter().find(|known| known.result.name() == stated.result.name()) {
+        // Results of one task for different robots are told apart by what differs between these.
+        let same = |known: &&Stated| {
+            known.result.name() == stated.result.name() && known.result.fingerprint == stated.result.fingerprint
+        };
+        match kept.iter().find(same) {
             Some(known) if known.result == stated.result => {}
             Some(known) => {
                 let (a, b, what) = (&known.name, &stated.name, stated.result.name());
@@ -91,14 +97,46 @@ fn different(all: Vec<Stated>) -> anyhow::Result<Vec<GaitResult>> {
     Ok(kept.into_iter().map(|stated| stated.result).collect())
 }
 
+/// Numbers that a robot's name has on a page; with more it is the how-manieth.
+const NAMED: usize = 3;
+
+/// What tells the robot of each result from those of others, where there are several with one name and gait: the numbers in
+/// which they differ.
+fn designs<'r>(results: impl Iterator<Item = &'r GaitResult>) -> Vec<Option<String>> {
+    let results: Vec<&GaitResult> = results.collect();
+    let named = |result: &&GaitResult| {
+        let alike = results.iter().filter(|r| (&r.gait, &r.robot) == (&result.gait, &result.robot));
+        let mut robots: Vec<&GaitResult> = Vec::new();
+        for other in alike {
+            if robots.iter().all(|known| known.fingerprint != other.fingerprint) {
+                robots.push(other);
+            }
+        }
+        let place = robots.iter().position(|robot| robot.fingerprint == result.fingerprint)?;
+        let mut names: Vec<String> = Vec::new();
+        for other in robots.iter().filter_map(|robot| robot.specification.as_ref()) {
+            let changed = result.specification.as_ref().map_or(Vec::new(), |own| changed(own, other));
+            let new = changed.into_iter().filter_map(|number| Some(format!("{}={}", number.name, number.values.a?)));
+            names.extend(new.filter(|name| !names.contains(name)).collect::<Vec<_>>());
+        }
+        let told = !names.is_empty() && names.len() <= NAMED;
+        (robots.len() > 1).then(|| if told { names.join(" ") } else { format!("robot {}", place + 1) })
+    };
+    results.iter().map(named).collect()
+}
+
 /// Writes the report of these results; tells where its page is.
 pub fn write(records: Vec<Record>, extremes: Extremes, detail: Option<f64>, out: &Path) -> anyhow::Result<PathBuf> {
-    let report = Report::new(records, extremes, detail)?;
+    write_report(&Report::new(records, extremes, detail)?, out)
+}
+
+/// Writes the files of a report; tells where its page is.
+pub fn write_report(report: &Report, out: &Path) -> anyhow::Result<PathBuf> {
     let figures = out.join("figures");
     std::fs::create_dir_all(&figures).with_context(|| format!("cannot create {}", input::name(&figures)))?;
     [out, &figures].into_iter().for_each(whole::tidy);
     for file in report.files() {
         whole::write(&out.join(&file.path), &file.contents)?;
     }
-    Ok(out.join("index.html"))
+    Ok(out.join(report.page()))
 }

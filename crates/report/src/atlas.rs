@@ -103,7 +103,7 @@ impl Atlas {
         let mut gaits: Vec<String> = Vec::new();
         let mut groups: Vec<(String, Criterion, Vec<&Record>)> = Vec::new();
         for record in records {
-            let (gait, criterion) = (variant(&record.result), record.result.criterion);
+            let (gait, criterion) = (record.variant(), record.result.criterion);
             if !gaits.contains(&gait) {
                 gaits.push(gait.clone());
             }
@@ -305,7 +305,7 @@ impl Atlas {
         }
         scene.quantity([width - 14.0, bottom + 30.0], ["speed", "m/s"], ticks.power, 11.0, Anchor::End, Ink::Muted);
         let mut figure = Figure::drawing(
-            &format!("active-{}-{criterion}", line.gait.replace(['/', ' '], "-")),
+            &format!("active-{}-{criterion}", line.gait.replace(['/', ' ', ',', '='], "-")),
             &title,
             scene,
             "Filled: the limit has no room to spare somewhere in the step. Each cell reaches half way to the next speed.",
@@ -313,11 +313,6 @@ impl Atlas {
         figure.wide = false;
         Some(figure)
     }
-}
-
-/// What tells a line's results from others: the gait, and whether its limits hold at each real leg.
-pub fn variant(result: &GaitResult) -> String {
-    if result.limits_at_real_legs { format!("{} at real legs", result.gait) } else { result.gait.clone() }
 }
 
 /// Limits without room to spare, as the receipt found them.

@@ -47,7 +47,7 @@ fn row(s: &Subject, best: f64, most: f64) -> Markup {
     let [_, between, real] = marks(&s.result);
     html! {
         tr {
-            td { a href=(format!("#{}", s.id)) { (capital(&super::atlas::variant(&s.result))) } }
+            td { a href=(format!("#{}", s.id)) { (capital(&s.variant)) } }
             td.n { b { (digits(s.cost, 6)) } }
             td { span.bar.long { span style=(format!("width:{:.1}%", 100.0 * s.cost / most)) {} } " "
                 @if s.cost == best { "the best" } @else { (against(s.cost / best)) } }

@@ -31,6 +31,7 @@ mod record;
 mod recovery;
 mod scale;
 mod scene;
+pub mod space;
 mod stick;
 mod subject;
 mod svg;
@@ -44,6 +45,7 @@ pub use subject::Subject;
 
 use atlas::Atlas;
 use piaffe_optimizer::flow::Undefined;
+use space::Space;
 
 /// Why there is no report.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -60,6 +62,7 @@ pub struct Report<'a> {
     /// All results, those without an optimum and those that could not be confirmed too.
     records: Vec<Record<'a>>,
     atlas: Option<(Atlas, Vec<Figure>)>,
+    space: Option<(Space, Vec<Figure>)>,
 }
 
 /// A file of a report: its path in the report's folder, with `/`, and its contents.
@@ -113,15 +116,27 @@ impl<'a> Report<'a> {
             let figures = atlas.figures();
             (atlas, figures)
         });
-        Ok(Report { subjects, records, atlas })
+        Ok(Report { subjects, records, atlas, space: None })
     }
 
-    /// `index.html`, and every figure as SVG and PDF.
+    /// The same for some walks out of a study.
+    pub fn of_space(self, space: Space) -> Report<'a> {
+        let figures = space.figures();
+        Report { space: Some((space, figures)), ..self }
+    }
+
+    /// Name of the page's file.
+    pub fn page(&self) -> &'static str {
+        if self.space.is_some() { "study.html" } else { "index.html" }
+    }
+
+    /// The page, and every figure as SVG and PDF.
     pub fn files(&self) -> Vec<File> {
-        let mut files = vec![File { path: "index.html".into(), contents: page::page(self).into_bytes() }];
+        let mut files = vec![File { path: self.page().into(), contents: page::page(self).into_bytes() }];
         let of_walks = self.subjects.iter().flat_map(|(s, figures)| figures.iter().map(|f| (format!("{}-", s.id), f)));
         let of_atlas = self.atlas.iter().flat_map(|(_, figures)| figures.iter().map(|f| (String::new(), f)));
-        for (of, figure) in of_atlas.chain(of_walks) {
+        let of_space = self.space.iter().flat_map(|(_, figures)| figures.iter().map(|f| (String::new(), f)));
+        for (of, figure) in of_atlas.chain(of_space).chain(of_walks) {
             let path = format!("figures/{of}{}", figure.name);
             files.push(File {
                 path: format!("{path}.svg"),

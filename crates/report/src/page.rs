@@ -1,10 +1,11 @@
 //! The page: everything in one file, to be opened, read and printed without a network.
 
-use super::atlas::{Atlas, variant};
+use super::atlas::Atlas;
 use super::figure::Figure;
 use super::font::Weight;
 use super::marks::marks;
 use super::number::{digits, given, scientific, significant};
+use super::space::Space;
 use super::subject::{Subject, spaced};
 use super::words::meaning;
 use super::{Record, Report, Standing};
@@ -77,9 +78,12 @@ fn title(report: &Report) -> String {
     }
     let robots = robots.join(" and ");
     let speeds: Vec<f64> = report.subjects.iter().map(|(s, _)| s.result.speed).collect();
+    if let Some((space, _)) = &report.space {
+        return format!("{} robots like {}", space.designs(), space.robot);
+    }
     match (&report.atlas, report.subjects.as_slice()) {
         (Some(_), _) => format!("Gaits of {robots} over speed"),
-        (None, [(one, _)]) => format!("{} of {robots}, {}", capital(&variant(&one.result)), task(&one.result)),
+        (None, [(one, _)]) => format!("{} of {robots}, {}", capital(&one.variant), task(&one.result)),
         (None, _) if speeds.windows(2).all(|pair| pair[0] == pair[1]) => {
             format!("Optimal gaits of {robots} at {} m/s", speeds.first().map_or(String::new(), |v| given(*v)))
         }
@@ -108,10 +112,13 @@ fn lead(report: &Report) -> String {
     let confirmed = count(|s| matches!(s, Standing::Confirmed(_)));
     let not = count(|s| matches!(s, Standing::NotConfirmed(_)));
     let without = count(|s| matches!(s, Standing::NoOptimum));
-    let mut text = match confirmed {
-        1 => "A local optimum, derived anew from its motion: its receipt holds.".to_string(),
-        n => format!("{n} local optima, each derived anew from its motion: the receipt of each holds."),
-    };
+    let of_space =
+        report.space.iter().map(|(space, _)| space.lead() + " The walks of some are shown. ").collect::<String>();
+    let mut text = of_space
+        + &match confirmed {
+            1 => "A local optimum, derived anew from its motion: its receipt holds.".to_string(),
+            n => format!("{n} local optima, each derived anew from its motion: the receipt of each holds."),
+        };
     text += &match not {
         0 => String::new(),
         1 => " One result could not be confirmed, and is not shown as an optimum.".into(),
@@ -130,10 +137,10 @@ fn navigation(report: &Report) -> Markup {
     let several = speeds.windows(2).any(|pair| pair[0] != pair[1]);
     html! {
         nav {
-            @if report.records.len() > 1 { a href="#overview" { "Overview" } }
+            @if has_overview(report) { a href="#overview" { "Overview" } }
             @for (s, _) in &report.subjects {
                 a href=(format!("#{}", s.id)) {
-                    (capital(&variant(&s.result))) " · " (s.result.criterion.name())
+                    (capital(&s.variant)) " · " (s.result.criterion.name())
                     @if several { " · " (given(s.result.speed)) " m/s" }
                 }
             }
@@ -141,8 +148,12 @@ fn navigation(report: &Report) -> Markup {
     }
 }
 
+fn has_overview(report: &Report) -> bool {
+    report.records.len() > 1 || report.space.is_some()
+}
+
 fn overview(report: &Report) -> Markup {
-    if report.records.len() < 2 {
+    if !has_overview(report) {
         return html! {};
     }
     let subjects: Vec<&Subject> = report.subjects.iter().map(|(s, _)| s).collect();
@@ -150,6 +161,7 @@ fn overview(report: &Report) -> Markup {
         section #overview {
             h2 { "Overview" }
             (refused(report))
+            @if let Some((space, figures)) = &report.space { (of_space(space, figures)) }
             @if let Some((atlas, figures)) = &report.atlas {
                 (gallery("overview", figures))
                 (script("overview", json!({ "figures": interactive(figures) })))
@@ -159,6 +171,16 @@ fn overview(report: &Report) -> Markup {
             (table(report))
             (compare::legend())
         }
+    }
+}
+
+/// The robots of a study: lines across axes, then what is better than all else, and which robots' walks follow.
+fn of_space(space: &Space, figures: &[Figure]) -> Markup {
+    html! {
+        @for wide in [true, false] {
+            div.gallery { @for f in figures.iter().filter(|f| f.wide == wide) { (drawing("overview", f)) } }
+        }
+        ul { @for robot in space.shown() { li { (robot) "." } } }
     }
 }
 
@@ -218,7 +240,7 @@ fn table(report: &Report) -> Markup {
 fn row(report: &Report, record: &Record) -> Markup {
     let r = &record.result;
     let shown = report.subjects.iter().find(|(s, _)| s.result == *r);
-    let name = capital(&variant(r));
+    let name = capital(&record.variant());
     html! {
         tr {
             td { @if let Some((s, _)) = shown { a href=(format!("#{}", s.id)) { (name) } } @else { (name) } }
@@ -247,7 +269,7 @@ fn section(s: &Subject, figures: &[Figure]) -> Markup {
     let name = &s.id;
     html! {
         section.walk id=(name) {
-            h2 { (capital(&variant(r))) " " small { (task(r)) } }
+            h2 { (capital(&s.variant)) " " small { (task(r)) } }
             (marks::head(r))
             div.top {
                 div.stage {

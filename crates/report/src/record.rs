@@ -8,6 +8,8 @@ use piaffe_optimizer::result::GaitResult;
 pub struct Record<'a> {
     pub result: GaitResult,
     pub standing: Standing<'a>,
+    /// What tells its robot from others on the same page, where there are such.
+    pub design: Option<String>,
 }
 
 /// What became of a result when it was derived anew.
@@ -24,24 +26,37 @@ impl<'a> Record<'a> {
     /// A result that this program has just issued, and examined: by the same verdict.
     pub fn issued(result: GaitResult, gait: &'a dyn Gait) -> Record<'a> {
         let standing = if result.is_optimal() { Standing::Confirmed(gait) } else { Standing::NoOptimum };
-        Record { result, standing }
+        Record { result, standing, design: None }
+    }
+
+    /// Names its robot on a page of several.
+    pub fn named(self, design: Option<String>) -> Record<'a> {
+        Record { design, ..self }
+    }
+
+    /// What tells its walk from others: the gait, whether its limits hold at each real leg, and which robot it is.
+    pub fn variant(&self) -> String {
+        let legs = if self.result.limits_at_real_legs { " at real legs" } else { "" };
+        let design = self.design.iter().map(|design| format!(", {design}"));
+        self.result.gait.clone() + legs + &design.collect::<String>()
     }
 
     /// Derives a result that comes from elsewhere anew.
     pub fn read(stated: GaitResult, gaits: &[&'a dyn Gait]) -> Record<'a> {
         if !stated.is_optimal() {
-            return Record { result: stated, standing: Standing::NoOptimum };
+            return Record { result: stated, standing: Standing::NoOptimum, design: None };
         }
-        match Readback::new(stated.clone(), gaits) {
-            Ok(Readback { result, gait, .. }) => Record { result, standing: Standing::Confirmed(gait) },
-            Err(unusable) => Record { result: stated, standing: Standing::NotConfirmed(unusable.to_string()) },
-        }
+        let (result, standing) = match Readback::new(stated.clone(), gaits) {
+            Ok(Readback { result, gait, .. }) => (result, Standing::Confirmed(gait)),
+            Err(unusable) => (stated, Standing::NotConfirmed(unusable.to_string())),
+        };
+        Record { result, standing, design: None }
     }
 
     /// A result of a gait that cannot be had, and why.
     pub fn unreadable(stated: GaitResult, why: String) -> Record<'a> {
         let standing = if stated.is_optimal() { Standing::NotConfirmed(why) } else { Standing::NoOptimum };
-        Record { result: stated, standing }
+        Record { result: stated, standing, design: None }
     }
 
     /// The gait of a confirmed optimum.

@@ -16,6 +16,8 @@ const INTERVALS: usize = 80;
 pub struct Subject<'a> {
     /// Names it on the page and in files; no other has the same.
     pub id: String,
+    /// What tells it from others in words: [`Record::variant`].
+    pub variant: String,
     pub result: GaitResult,
     pub gait: &'a dyn Gait,
     pub motion: Motion,
@@ -37,7 +39,7 @@ impl<'a> Subject<'a> {
         };
         let (Some(cost), Some(transport)) = (result.cost, record.cost_of_transport()) else { return Ok(None) };
         let walk = Walk::even(gait, &motion, INTERVALS)?;
-        Ok(Some(Subject { id, result, gait, motion, walk, cost, transport }))
+        Ok(Some(Subject { id, variant: record.variant(), result, gait, motion, walk, cost, transport }))
     }
 
     pub fn description(&self) -> &'a Description {

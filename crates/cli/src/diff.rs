@@ -1,0 +1,114 @@
+//! `piaffe diff`: two results side by side.
+
+use super::digits::decimal;
+use super::{document, input, output};
+use piaffe_optimizer::result::GaitResult;
+use piaffe_study::difference::{Difference, Pair, Prediction};
+use std::io::{self, Write};
+use std::path::Path;
+
+/// Slopes that are named, the steepest in percent per percent first.
+const SLOPES: usize = 5;
+
+pub fn run(a: &Path, b: &Path, json: Option<&str>) -> anyhow::Result<bool> {
+    let results = Pair { a: document::confirmed(a)?, b: document::confirmed(b)? };
+    let difference = Difference::new(&results.a, &results.b);
+    if json != Some("-") {
+        let names = Pair { a: input::name(a), b: input::name(b) };
+        output::quiet_when_closed(tell(&names, &results, &difference))?;
+    }
+    if let Some(target) = json {
+        output::json_to(target, &difference)?;
+    }
+    Ok(true)
+}
+
+fn tell(names: &Pair<String>, results: &Pair<GaitResult>, d: &Difference) -> io::Result<()> {
+    let mut out = output::person();
+    for (letter, name, r) in [("A", &names.a, &results.a), ("B", &names.b, &results.b)] {
+        write!(out, "{letter}  {name}: {} of {}, least {} at {} m/s: ", r.gait, r.robot, r.criterion.name(), r.speed)?;
+        match r.cost {
+            Some(cost) => writeln!(out, "{} {}", decimal(cost, 4), r.criterion.unit())?,
+            None => writeln!(out, "no optimum ({})", r.message)?,
+        }
+    }
+    if let (Pair { a: Some(a), b: Some(b) }, true) = (d.cost, d.criterion.a == d.criterion.b) {
+        let percent = 100.0 * (b / a - 1.0);
+        let words = if percent > 0.0 { "more" } else { "less" };
+        writeln!(out, "   B costs {} % {words} than A", decimal(percent.abs(), 2))?;
+    }
+    if d.numbers.is_empty() {
+        writeln!(out, "numbers         the same in both specifications")?;
+    }
+    for (k, number) in d.numbers.iter().enumerate() {
+        let value = |value: Option<f64>| value.map_or("none".into(), |value| value.to_string());
+        let head = if k == 0 { "numbers" } else { "" };
+        let Pair { a, b } = number.values;
+        writeln!(out, "{head:15} {}: {} → {}", number.name, value(a), value(b))?;
+    }
+    if d.other_specification {
+        writeln!(out, "                something else than numbers differs between the specifications")?;
+    }
+    if let Some(prediction) = &d.prediction {
+        predicted(&mut out, prediction, results.a.criterion.unit())?;
+    }
+    let durations = |list: &[f64]| list.iter().map(|t| decimal(*t, 4)).collect::<Vec<_>>().join("/");
+    writeln!(out, "half steps      {} → {} s", durations(&d.durations.a), durations(&d.durations.b))?;
+    active(&mut out, d)?;
+    for (k, slope) in d.slopes.iter().take(SLOPES).enumerate() {
+        let head = if k == 0 { "slopes" } else { "" };
+        let per = if slope.unit.is_empty() { String::new() } else { format!(" per {}", slope.unit) };
+        let (name, Pair { a, b }) = (&slope.parameter, slope.slopes);
+        writeln!(out, "{head:15} {name}: {} → {} {}{per}", decimal(a, 4), decimal(b, 4), results.a.criterion.unit())?;
+    }
+    let number = |number: Option<f64>| number.map_or("–".into(), |number| format!("{number:.1e}"));
+    for (letter, v) in [("A", &d.verdicts.a), ("B", &d.verdicts.b)] {
+        let head = if letter == "A" { "verdicts" } else { "" };
+        let (violation, cycle, kkt) = (number(v.max_violation), number(v.cycle_error), number(v.kkt_residual));
+        let between = v.certificate.unwrap_or("–");
+        writeln!(
+            out,
+            "{head:15} {letter}: violation {violation}, cycle {cycle}, KKT {kkt}, between the instants {between}"
+        )?;
+    }
+    Ok(())
+}
+
+/// Which is better, and why.
+fn predicted(out: &mut impl Write, p: &Prediction, unit: &str) -> io::Result<()> {
+    for (k, part) in p.parts.iter().enumerate() {
+        let head = if k == 0 { "explained by" } else { "" };
+        let (name, change) = (&part.parameter, decimal(part.change, 4));
+        writeln!(out, "{head:15} {name} by {change} {}: {} {unit}", part.unit, signed(part.at_a))?;
+    }
+    if !p.parts.is_empty() {
+        let share =
+            if p.difference == 0.0 { String::new() } else { format!(" ({:.0} %)", 100.0 * p.at_a / p.difference) };
+        let (sum, mean, all) = (signed(p.at_a), signed(p.mean), signed(p.difference));
+        writeln!(out, "{:15} {sum} of {all} {unit}{share} to first order; {mean} with the slopes of both", "in all")?;
+    }
+    if !p.without_slope.is_empty() {
+        writeln!(out, "{:15} no slope is known in {}", "", p.without_slope.join(", "))?;
+    }
+    Ok(())
+}
+
+fn signed(number: f64) -> String {
+    let plus = if number >= 0.0 { "+" } else { "" };
+    format!("{plus}{}", decimal(number, 4))
+}
+
+/// Limits without room to spare: in both, and in one of them.
+fn active(out: &mut impl Write, d: &Difference) -> io::Result<()> {
+    let of = |a: bool, b: bool| {
+        let with = d.limits.iter().filter(move |room| (room.margins.a.is_some(), room.margins.b.is_some()) == (a, b));
+        with.map(|room| format!("{} (half step {})", room.constraint, room.half_step)).collect::<Vec<_>>().join(", ")
+    };
+    let groups = [("in both", of(true, true)), ("in A only", of(true, false)), ("in B only", of(false, true))];
+    let mut head = "active";
+    for (which, limits) in groups.iter().filter(|(_, limits)| !limits.is_empty()) {
+        writeln!(out, "{head:15} {which}: {limits}")?;
+        head = "";
+    }
+    Ok(())
+}

@@ -1,0 +1,229 @@
+//! Two results beside each other: what differs between their questions and their answers, and how much of the cost's difference
+//! follows from what differs between the robots.
+
+use piaffe_codegen::spec::numbers;
+use piaffe_model::Specification;
+use piaffe_model::motion::Criterion;
+use piaffe_optimizer::result::{GaitResult, Status};
+use piaffe_optimizer::sensitivity::{Sensitivities, Sensitivity};
+use serde::Serialize;
+
+/// A value of both.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Pair<T> {
+    pub a: T,
+    pub b: T,
+}
+
+/// What differs, and what does not.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Difference {
+    /// Numbers of the specification that are not the same in both, by their names.
+    pub numbers: Vec<Changed>,
+    /// Whether something else than numbers differs between the specifications, comments aside.
+    pub other_specification: bool,
+    pub robot: Pair<String>,
+    pub gait: Pair<String>,
+    pub criterion: Pair<Criterion>,
+    /// m/s.
+    pub speed: Pair<f64>,
+    pub status: Pair<Status>,
+    pub message: Pair<String>,
+    /// The criterion's, where there is an optimum.
+    pub cost: Pair<Option<f64>>,
+    /// Of each phase, s.
+    pub durations: Pair<Vec<f64>>,
+    pub limits: Vec<Room>,
+    pub slopes: Vec<Slope>,
+    pub verdicts: Pair<Verdicts>,
+    pub prediction: Option<Prediction>,
+}
+
+/// A number of the specification; none where there is none of this name.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Changed {
+    pub name: String,
+    pub values: Pair<Option<f64>>,
+}
+
+/// A limit that is active in one of both or both: its margin, scaled, where it is.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Room {
+    pub constraint: String,
+    /// 1-based.
+    pub half_step: usize,
+    pub margins: Pair<Option<f64>>,
+}
+
+/// Slope of the least criterion in a parameter, the criterion's unit per the parameter's.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Slope {
+    pub parameter: String,
+    pub unit: String,
+    pub slopes: Pair<f64>,
+}
+
+/// How sure each is.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Verdicts {
+    pub max_violation: Option<f64>,
+    pub cycle_error: Option<f64>,
+    pub kkt_residual: Option<f64>,
+    pub certificate: Option<&'static str>,
+}
+
+/// What the slopes let expect of the cost's difference, to first order. Both must be least in the same criterion.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Prediction {
+    /// By each parameter that differs, the largest first.
+    pub parts: Vec<Part>,
+    /// Their sums: with the slopes at A, at B, and the means of both, which are right to second order.
+    pub at_a: f64,
+    pub at_b: f64,
+    pub mean: f64,
+    /// The cost's difference, B's less A's.
+    pub difference: f64,
+    /// Numbers that differ and have no slope: the gait does not depend on them, or it is not known how.
+    pub without_slope: Vec<String>,
+}
+
+/// What a parameter adds: its slope times its change.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Part {
+    pub parameter: String,
+    pub unit: String,
+    pub change: f64,
+    pub at_a: f64,
+    pub at_b: f64,
+}
+
+impl Difference {
+    pub fn new(a: &GaitResult, b: &GaitResult) -> Difference {
+        let (numbers, other_specification) = specification(a, b);
+        Difference {
+            prediction: Prediction::new(a, b, &numbers),
+            numbers,
+            other_specification,
+            robot: pair(a, b, |r| r.robot.clone()),
+            gait: pair(a, b, |r| r.gait.clone()),
+            criterion: pair(a, b, |r| r.criterion),
+            speed: pair(a, b, |r| r.speed),
+            status: pair(a, b, |r| r.status),
+            message: pair(a, b, |r| r.message.clone()),
+            cost: pair(a, b, |r| r.cost),
+            durations: pair(a, b, |r| r.durations.clone()),
+            limits: limits(a, b),
+            slopes: slopes(a, b),
+            verdicts: pair(a, b, Verdicts::of),
+        }
+    }
+}
+
+fn pair<T>(a: &GaitResult, b: &GaitResult, of: impl Fn(&GaitResult) -> T) -> Pair<T> {
+    Pair { a: of(a), b: of(b) }
+}
+
+/// The numbers that differ, and whether something else does.
+fn specification(a: &GaitResult, b: &GaitResult) -> (Vec<Changed>, bool) {
+    let (Some(of_a), Some(of_b)) = (&a.specification, &b.specification) else {
+        return (Vec::new(), a.fingerprint != b.fingerprint);
+    };
+    let changed = changed(of_a, of_b);
+    let other = changed.is_empty() && a.fingerprint != b.fingerprint
+        || changed.iter().any(|number| number.values.a.is_none() || number.values.b.is_none());
+    (changed, other)
+}
+
+/// The numbers that differ between two specifications.
+pub fn changed(a: &Specification, b: &Specification) -> Vec<Changed> {
+    let all =
+        |s: &Specification| [numbers(&s.robot), numbers(&s.gait)].map(|list| list.into_iter()).into_iter().flatten();
+    let (of_a, of_b): (Vec<_>, Vec<_>) = (all(a).collect(), all(b).collect());
+    let mut changed = Vec::new();
+    for number in &of_a {
+        let other = of_b.iter().find(|other| other.name == number.name).map(|other| other.value);
+        if other != Some(number.value) {
+            changed.push(Changed { name: number.name.clone(), values: Pair { a: Some(number.value), b: other } });
+        }
+    }
+    for number in of_b.iter().filter(|number| of_a.iter().all(|other| other.name != number.name)) {
+        changed.push(Changed { name: number.name.clone(), values: Pair { a: None, b: Some(number.value) } });
+    }
+    changed
+}
+
+/// Limits that are active in one of both, with the half step.
+fn limits(a: &GaitResult, b: &GaitResult) -> Vec<Room> {
+    let findings = |r: &GaitResult| r.receipt.as_ref().map_or(Vec::new(), |receipt| receipt.findings.clone());
+    let mut limits: Vec<Room> = Vec::new();
+    for (own, in_b) in [(findings(a), false), (findings(b), true)] {
+        for finding in own {
+            let known = |room: &Room| (&room.constraint, room.half_step) == (&finding.constraint, finding.half_step);
+            let place = limits.iter().position(known).unwrap_or_else(|| {
+                let (constraint, half_step) = (finding.constraint.clone(), finding.half_step);
+                limits.push(Room { constraint, half_step, margins: Pair { a: None, b: None } });
+                limits.len() - 1
+            });
+            let margins = &mut limits[place].margins;
+            *(if in_b { &mut margins.b } else { &mut margins.a }) = Some(finding.margin);
+        }
+    }
+    limits
+}
+
+/// Each slope of one result beside that of the other.
+fn both<'r>(a: &'r GaitResult, b: &'r GaitResult) -> impl Iterator<Item = (&'r Sensitivity, &'r Sensitivity)> {
+    let of = |r: &'r GaitResult| r.sensitivities.as_ref().map_or(&[][..], |s: &Sensitivities| &s.slopes);
+    let (of_a, of_b) = (of(a), of(b));
+    of_a.iter().filter_map(move |slope| Some((slope, of_b.iter().find(|other| other.parameter == slope.parameter)?)))
+}
+
+fn slopes(a: &GaitResult, b: &GaitResult) -> Vec<Slope> {
+    let some = both(a, b).filter(|(a, b)| a.slope != 0.0 || b.slope != 0.0);
+    some.map(|(a, b)| Slope {
+        parameter: a.parameter.clone(),
+        unit: a.unit.clone(),
+        slopes: Pair { a: a.slope, b: b.slope },
+    })
+    .collect()
+}
+
+impl Verdicts {
+    fn of(result: &GaitResult) -> Verdicts {
+        let receipt = result.receipt.as_ref();
+        Verdicts {
+            max_violation: receipt.map(|receipt| receipt.max_violation),
+            cycle_error: receipt.map(|receipt| receipt.cycle_error),
+            kkt_residual: receipt.and_then(|receipt| receipt.kkt_residual),
+            certificate: result.certificate.as_ref().map(|certificate| certificate.standing.name()),
+        }
+    }
+}
+
+impl Prediction {
+    fn new(a: &GaitResult, b: &GaitResult, changed: &[Changed]) -> Option<Prediction> {
+        let difference = b.cost? - a.cost?;
+        let known = a.sensitivities.is_some() && b.sensitivities.is_some();
+        if a.criterion != b.criterion || !known {
+            return None;
+        }
+        let part = |(a, b): (&Sensitivity, &Sensitivity)| {
+            let change = b.value - a.value;
+            (change != 0.0).then(|| Part {
+                parameter: a.parameter.clone(),
+                unit: a.unit.clone(),
+                change,
+                at_a: a.slope * change,
+                at_b: b.slope * change,
+            })
+        };
+        let mut parts: Vec<Part> = both(a, b).filter_map(part).collect();
+        parts.sort_by(|a, b| b.at_a.abs().total_cmp(&a.at_a.abs()));
+        let sum = |of: fn(&Part) -> f64| parts.iter().map(of).sum::<f64>();
+        let (at_a, at_b) = (sum(|part| part.at_a), sum(|part| part.at_b));
+        let has_slope = |name: &str| both(a, b).any(|(slope, _)| slope.numbers.iter().any(|number| number == name));
+        let without = changed.iter().filter(|number| !has_slope(&number.name));
+        let without_slope = without.map(|number| number.name.clone()).collect();
+        Some(Prediction { parts, at_a, at_b, mean: 0.5 * (at_a + at_b), difference, without_slope })
+    }
+}

@@ -1,0 +1,190 @@
+//! Studies as a person runs them: in parts, interrupted, on a robot that nobody tuned; and two results side by side.
+
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
+use tempfile::tempdir;
+
+const SHIPPED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/model-spec");
+
+fn piaffe(folder: &Path, arguments: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_piaffe"));
+    command.args(arguments.split(' ')).current_dir(folder).stdin(Stdio::null());
+    command
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+#[track_caller]
+fn succeeds(folder: &Path, arguments: &str) -> String {
+    let Output { status, stdout, stderr } = piaffe(folder, arguments).output().unwrap();
+    assert!(status.success(), "{arguments}: {}", text(&stderr));
+    text(&stdout)
+}
+
+#[track_caller]
+fn fails(folder: &Path, arguments: &str, words: &[&str]) {
+    let Output { status, stderr, .. } = piaffe(folder, arguments).output().unwrap();
+    let told = text(&stderr);
+    assert!(!status.success() && words.iter().all(|word| told.contains(word)), "{arguments}: {told}");
+}
+
+/// All files of a study but its journal, whose lines stand in the order in which they were found.
+fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut files = BTreeMap::new();
+    let mut folders = vec![folder.to_path_buf()];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+            if entry.is_dir() {
+                folders.push(entry);
+            } else if !entry.ends_with("journal.jsonl") {
+                files.insert(entry.file_name().unwrap().to_string_lossy().into_owned(), std::fs::read(&entry).unwrap());
+            }
+        }
+    }
+    files
+}
+
+#[track_caller]
+fn same(a: &Path, b: &Path) {
+    let (a, b) = (contents(a), contents(b));
+    assert_eq!(a.keys().collect::<Vec<_>>(), b.keys().collect::<Vec<_>>());
+    let differing: Vec<&String> = a.keys().filter(|name| a[*name] != b[*name]).collect();
+    assert!(differing.is_empty(), "{differing:?}");
+}
+
+/// The table of a study, line by line under its names.
+fn rows(folder: &Path) -> Vec<BTreeMap<String, String>> {
+    let table = std::fs::read_to_string(folder.join("study.csv")).unwrap();
+    let mut lines = table.lines().map(|line| line.split(',').map(String::from));
+    let names: Vec<String> = lines.next().unwrap().collect();
+    lines.map(|cells| names.iter().cloned().zip(cells).collect()).collect()
+}
+
+const ASKED: &str =
+    "study trot --speed 0.6 --vary links.thigh.mass=1.2..2.0 --vary limits.friction=0.5..1.0 --sample 5 --robot";
+
+#[test]
+fn parts_interruptions_and_threads_change_no_byte() {
+    let folder = tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let asked = format!("{ASKED} {SHIPPED}");
+    succeeds(folder.path(), &format!("{asked} --out whole"));
+    assert_eq!(rows(&at("whole")).len(), 10);
+
+    let (mut kills, mut wait) = (0, 20);
+    loop {
+        let mut child = piaffe(folder.path(), &format!("{asked} --out broken --quiet"));
+        let mut child = child.env("RAYON_NUM_THREADS", "1").stdout(Stdio::null()).spawn().unwrap();
+        // Longer and longer, or a machine that is too slow would never end.
+        std::thread::sleep(Duration::from_millis(wait));
+        let _ = child.kill();
+        if child.wait().unwrap().success() {
+            break;
+        }
+        (kills, wait) = (kills + 1, wait * 2);
+    }
+    assert!(kills > 1, "the study was never killed");
+    same(&at("whole"), &at("broken"));
+
+    for part in ["1/3", "2/3", "3/3"] {
+        succeeds(folder.path(), &format!("{asked} --shard {part} --out part{}", &part[..1]));
+    }
+    succeeds(folder.path(), "merge part3 part1 part2 --out merged");
+    same(&at("whole"), &at("merged"));
+
+    fails(folder.path(), "merge part1 part2 part2 --out other", &["part 3/3 is missing", "are both part 2/3"]);
+    succeeds(folder.path(), &format!("{asked} --seed 2 --shard 3/3 --out part4"));
+    fails(folder.path(), "merge part1 part2 part4 --out other", &["part4 is a part of another study than part1"]);
+    let journal = std::fs::read_to_string(at("part2").join("journal.jsonl")).unwrap();
+    let cut: Vec<&str> = journal.lines().skip(1).collect();
+    std::fs::write(at("part2").join("journal.jsonl"), cut.join("\n") + "\n").unwrap();
+    fails(folder.path(), "merge part1 part2 part3 --out other", &["part2 lacks 1 rows"]);
+}
+
+#[test]
+fn a_row_is_what_optimize_gives_with_the_same_numbers() {
+    let folder = tempdir().unwrap();
+    let asked = "study trot --speed 0.5,0.6 --criterion torque --vary links.thigh.mass=1.3,1.9 --also slopes --robot";
+    succeeds(folder.path(), &format!("{asked} {SHIPPED}"));
+    let rows = rows(&folder.path().join("study"));
+    assert_eq!(rows.len(), 4);
+    for row in rows {
+        let (mass, speed) = (&row["links.thigh.mass"], &row["speed"]);
+        let asked =
+            format!("optimize trot --criterion torque --speed {speed} --set links.thigh.mass={mass} --json - --robot");
+        let alone: Value = serde_json::from_str(&succeeds(folder.path(), &format!("{asked} {SHIPPED}"))).unwrap();
+        let near = |a: &str, b: f64| (a.parse::<f64>().unwrap() - b).abs() <= 1e-6 * b.abs();
+        assert!(near(&row["cost"], alone["cost"].as_f64().unwrap()), "{row:?} {}", alone["cost"]);
+        assert!(near(&row["duration.1"], alone["durations"][0].as_f64().unwrap()), "{row:?}");
+        let slopes = alone["sensitivities"]["slopes"].as_array().unwrap();
+        let of_mass = slopes.iter().find(|slope| slope["parameter"] == "links.thigh.mass").unwrap();
+        assert!(
+            (row["slope.links.thigh.mass"].parse::<f64>().unwrap() / of_mass["slope"].as_f64().unwrap() - 1.0).abs()
+                < 1e-3
+        );
+    }
+}
+
+/// All legs of an imported robot have links of their own: numbers of several change together.
+#[test]
+fn a_robot_that_nobody_tuned_is_studied() {
+    let folder = tempdir().unwrap();
+    let urdf = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/import/00-control-ok.urdf");
+    succeeds(folder.path(), &format!("import {urdf} --out dog"));
+    let told = succeeds(
+        folder.path(),
+        "study trot --speed 0.4 --vary links.{fl,fr,hl,hr}_thigh.mass=0.8..1.2 --sample 3 --robot dog --out study",
+    );
+    assert!(told.contains("trot, least energy at 0.4 m/s: 3 of 3 robots have an optimum"), "{told}");
+    let page = std::fs::read_to_string(folder.path().join("study/study.html")).unwrap();
+    assert!(page.contains("3 robots like q") && page.contains("parallel-trot-energy"), "no lines across axes");
+    let walks: Vec<_> = std::fs::read_dir(folder.path().join("study/walks")).unwrap().collect();
+    assert!(!walks.is_empty());
+    succeeds(folder.path(), "verify study/walks");
+}
+
+#[test]
+fn everything_wrong_with_a_question_is_told_before_anything_is_computed() {
+    let folder = tempdir().unwrap();
+    let asked = "study trot --speed 0.6 --vary links.thig.mass=1,2 --vary links.shin.lenght=0.1..0.2 --out bad --robot";
+    let words =
+        ["did you mean `links.thigh.mass`", "did you mean `links.shin.length`", "has no values between 0.1 and 0.2"];
+    fails(folder.path(), &format!("{asked} {SHIPPED}"), &words);
+    assert!(!folder.path().join("bad").exists());
+    std::fs::write(folder.path().join("table.csv"), "links.thigh.mass,gravty\n1.5,9.81\nheavy,9.81\n").unwrap();
+    let asked = format!("study trot --speed 0.6 --designs table.csv --robot {SHIPPED}");
+    fails(folder.path(), &asked, &["table.csv", "line 3: `heavy` is no number"]);
+    fails(folder.path(), &format!("{ASKED} {SHIPPED} --shard 3/2"), &["I/N"]);
+}
+
+/// What the slopes let expect of a small change, against the change itself; and both robots on one page.
+#[test]
+fn slopes_explain_the_difference_of_two_robots() {
+    let folder = tempdir().unwrap();
+    for (name, mass) in [("light", 1.6), ("heavy", 1.62)] {
+        let set = format!("--set links.thigh.mass={mass} --robot {SHIPPED}");
+        succeeds(folder.path(), &format!("optimize trot --speed 0.6 {set} --json {name}.json"));
+    }
+    let difference: Value =
+        serde_json::from_str(&succeeds(folder.path(), "diff light.json heavy.json --json -")).unwrap();
+    let prediction = &difference["prediction"];
+    let number = |key: &str| prediction[key].as_f64().unwrap();
+    assert_eq!(difference["numbers"][0]["name"], "links.thigh.mass");
+    assert_eq!(difference["numbers"].as_array().unwrap().len(), 1);
+    let real = number("difference");
+    assert!(real > 0.01, "{real}");
+    assert!((number("at_a") / real - 1.0).abs() < 0.05, "{prediction}");
+    // To second order it is nearer.
+    assert!((number("mean") / real - 1.0).abs() < 0.005, "{prediction}");
+    let told = succeeds(folder.path(), "diff light.json heavy.json");
+    assert!(told.contains("links.thigh.mass: 1.6 → 1.62") && told.contains("to first order"), "{told}");
+
+    succeeds(folder.path(), "report light.json heavy.json --out page");
+    let page = std::fs::read_to_string(folder.path().join("page/index.html")).unwrap();
+    assert!(page.contains("Trot, links.thigh.mass=1.62") && page.contains("Trot, links.thigh.mass=1.6 "), "no names");
+}
