@@ -116,9 +116,14 @@ impl<'a> Report<'a> {
         Ok(Report { subjects, records, atlas })
     }
 
+    /// The page alone.
+    pub fn page(&self) -> String {
+        page::page(self)
+    }
+
     /// `index.html`, and every figure as SVG and PDF.
     pub fn files(&self) -> Vec<File> {
-        let mut files = vec![File { path: "index.html".into(), contents: page::page(self).into_bytes() }];
+        let mut files = vec![File { path: "index.html".into(), contents: self.page().into_bytes() }];
         let of_walks = self.subjects.iter().flat_map(|(s, figures)| figures.iter().map(|f| (format!("{}-", s.id), f)));
         let of_atlas = self.atlas.iter().flat_map(|(_, figures)| figures.iter().map(|f| (String::new(), f)));
         for (of, figure) in of_atlas.chain(of_walks) {

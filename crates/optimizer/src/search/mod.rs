@@ -12,3 +12,4 @@ pub mod local;
 pub mod multi_start;
 mod nearest;
 pub mod refine;
+pub mod watch;

@@ -4,10 +4,11 @@ use super::evidence::Effort;
 use super::feasible::motions;
 use super::guess::{Plan, walk};
 use super::local::{Local, Task};
+use super::watch::{Event, Watch, ended};
 use crate::cycle::{Cycle, theta};
 use piaffe_model::Gait;
 use piaffe_model::motion::Criterion;
-use piaffe_sqp::{Control, Iteration, Problem, Values};
+use piaffe_sqp::{Iteration, Problem, Values};
 use rayon::prelude::*;
 
 /// Costs within this share of each other belong to one optimum, if the motions agree too.
@@ -86,9 +87,21 @@ pub fn search_from(
     neighbours: &[Vec<f64>],
     done: &(dyn Fn(usize) + Sync),
 ) -> Found {
+    search_watched(gait, criterion, speed, settings, neighbours, &ended(done))
+}
+
+/// The same, for who wants to know more of it or may end it.
+pub fn search_watched(
+    gait: &dyn Gait,
+    criterion: Criterion,
+    speed: f64,
+    settings: &Settings,
+    neighbours: &[Vec<f64>],
+    watch: Watch,
+) -> Found {
     let task = Task { gait, criterion, speed };
     let scale = Cycle::new(gait, criterion, speed).scale();
-    let follow = |theta: &Vec<f64>| End { local: task.follow(theta, &mut |_| Control::Continue), informed: true };
+    let follow = |theta: &Vec<f64>| End { local: task.follow(theta, &mut |_| watch(Event::Iterate)), informed: true };
     let mut ends: Vec<End> = neighbours.par_iter().map(follow).collect();
     let most = settings.starts.unwrap_or(MOST).max(1);
     for first in (0..most).step_by(BATCH) {
@@ -98,8 +111,8 @@ pub fn search_from(
         }
         let best = so_far.optima.first().filter(|_| first > 0);
         let batch = (first..most.min(first + BATCH)).into_par_iter().map(|k| {
-            let end = begin(&task, settings.seed, k, best);
-            done(k);
+            let end = begin(&task, settings.seed, k, best, watch);
+            watch(Event::Ended(k));
             end
         });
         ends.par_extend(batch);
@@ -109,7 +122,7 @@ pub fn search_from(
         return found;
     }
     // Descents may fail where there are motions: from these they have no limit to find their way to.
-    let known = motions(&task, settings.seed, found.effort.starts);
+    let known = motions(&task, settings.seed, found.effort.starts, watch);
     let thetas: Vec<Vec<f64>> = known.iter().map(|local| local.theta.clone()).collect();
     ends.par_extend(thetas.par_iter().map(follow));
     let mut found = collect(criterion, &scale, &ends);
@@ -123,8 +136,8 @@ pub fn search_from(
 }
 
 /// The k-th start of a seed, and where it leads.
-fn begin(task: &Task, seed: u64, k: usize, best: Option<&Optimum>) -> End {
-    let observe = &mut |_: &Iteration| Control::Continue;
+fn begin(task: &Task, seed: u64, k: usize, best: Option<&Optimum>, watch: Watch) -> End {
+    let observe = &mut |_: &Iteration| watch(Event::Iterate);
     if let (Some(best), 0) = (best, k % HOP) {
         return End { local: task.descend(&hop(task, seed, k, &best.local.theta), observe), informed: true };
     }
