@@ -13,8 +13,8 @@ from __future__ import annotations
 from ._optimize import optimize
 from ._piaffe import Error, Gait, NoOptimum, Robot, SpecificationError, __version__
 from ._robots import robots
-from .dynamics import Dynamics, InverseDynamics, InverseJacobian, dynamics
-from .result import (
+from ._dynamics import Dynamics, InverseDynamics, InverseJacobian, dynamics
+from ._result import (
     Audit,
     Certificate,
     Finding,
@@ -27,7 +27,8 @@ from .result import (
     Statement,
     Status,
 )
-from .walk import Walk
+from ._study import Interrupted, Study, Table, study
+from ._walk import Walk
 
 __all__ = [
     "Audit",
@@ -38,6 +39,7 @@ __all__ = [
     "Gait",
     "Gap",
     "HalfStep",
+    "Interrupted",
     "InverseDynamics",
     "InverseJacobian",
     "NoOptimum",
@@ -49,9 +51,12 @@ __all__ = [
     "Stability",
     "Statement",
     "Status",
+    "Study",
+    "Table",
     "Walk",
     "__version__",
     "dynamics",
     "optimize",
     "robots",
+    "study",
 ]

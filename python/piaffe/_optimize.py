@@ -7,7 +7,7 @@ from typing import Literal
 
 from . import _piaffe
 from ._piaffe import Gait
-from .result import Result
+from ._result import Result
 
 Criterion = Literal["energy", "torque"]
 

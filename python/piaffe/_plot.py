@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .result import Result
+from ._result import Result
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -44,8 +44,8 @@ def figure(result: Result) -> Figure:
     ]:
         area = areas[name]
         area.plot(walk.t, columns, label=names)
-        for k in np.flatnonzero(np.diff(walk.half_step)):
-            area.axvline(walk.t[k], color="0.8", linewidth=1, zorder=0)
+        for end in walk.t[:-1][np.diff(walk.half_step) != 0]:
+            area.axvline(end, color="0.8", linewidth=1, zorder=0)
         area.set(xlabel="time, s", ylabel=unit)
         area.legend(fontsize="small")
     return page

@@ -10,6 +10,7 @@ mod optimize;
 mod result;
 mod robot;
 mod robots;
+mod study;
 mod work;
 
 use pyo3::prelude::*;
@@ -30,6 +31,10 @@ mod _piaffe {
     use super::robots::built_in;
     #[pymodule_export]
     use super::run;
+    #[pymodule_export]
+    use super::study::{answers, unknown};
+    #[pymodule_export]
+    use super::work::Stop;
     use pyo3::prelude::*;
 
     #[pymodule_init]

@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::result::text;
 use crate::robot::Gait;
-use crate::work::work;
+use crate::work::{Stop, work};
 use piaffe::Task;
 use piaffe::motion::Criterion;
 use piaffe::search::multi_start::Settings;
@@ -48,7 +48,7 @@ pub fn optimize(
 ) -> PyResult<String> {
     let (criterion, speed) = (self::criterion(criterion)?, self::speed(speed)?);
     let (gait, settings) = (gait.derived(), settings(starts, seed)?);
-    let answer = work(py, threads, move |stop| {
+    let answer = work(py, threads, Stop::default(), move |stop| {
         let watch = |_| if stop.is_wanted() { Control::Stop } else { Control::Continue };
         Task { gait: &*gait, criterion, speed }.answer(real_legs, &settings, &watch)
     })?;

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, NoOptimum};
 use crate::robot::unloadable;
-use crate::work::work;
+use crate::work::{Stop, work};
 use piaffe::Robot;
 use piaffe::audit::Audit;
 use piaffe::export::{mjcf as mujoco, npz as arrays, table};
@@ -64,7 +64,7 @@ pub fn normal(json: &str) -> PyResult<String> {
 pub fn verify(py: Python<'_>, json: String) -> PyResult<String> {
     let (stated, result) = read(&json).map_err(Error::new_err)?;
     let gait = gait_of(&result)?;
-    text(&work(py, None, move |_| Audit::new(&stated, &result, &[&gait]))?)
+    text(&work(py, None, Stop::default(), move |_| Audit::new(&stated, &result, &[&gait]))?)
 }
 
 /// What a result's walk is made into.
@@ -117,7 +117,7 @@ pub fn page(py: Python<'_>, json: &str) -> PyResult<String> {
     let (_, result) = read(json).map_err(Error::new_err)?;
     motion_of(&result)?;
     let gait = gait_of(&result)?;
-    let page = work(py, None, move |_| {
+    let page = work(py, None, Stop::default(), move |_| {
         Report::new(vec![Record::read(result, &[&gait])], Extremes::default(), None).map(|report| report.page())
     })?;
     page.map_err(|why| Error::new_err(why.to_string()))

@@ -67,6 +67,10 @@ impl Robot {
         Ok(Robot { robot: piaffe::Robot::new(files).map_err(unloadable)?, notes })
     }
 
+    pub fn robot(&self) -> &piaffe::Robot {
+        &self.robot
+    }
+
     fn texts(&self) -> (&str, BTreeMap<String, &str>) {
         let files = self.robot.files();
         let gaits = self.robot.gaits().into_iter().zip(files.gaits.iter().map(|file| &*file.text));

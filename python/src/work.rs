@@ -16,8 +16,22 @@ use std::time::Duration;
 const TICK: Duration = Duration::from_millis(50);
 
 /// Whether work is to be ended. What it gives then is thrown away.
+#[pyclass(frozen, module = "piaffe._piaffe")]
 #[derive(Clone, Default)]
 pub struct Stop(Arc<AtomicBool>);
+
+#[pymethods]
+impl Stop {
+    #[new]
+    fn new() -> Stop {
+        Stop::default()
+    }
+
+    /// From now on it is.
+    fn set(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
 
 impl Stop {
     pub fn is_wanted(&self) -> bool {
@@ -39,10 +53,10 @@ fn pool(threads: Option<usize>) -> PyResult<ThreadPool> {
 pub fn work<T: Send + 'static>(
     py: Python<'_>,
     threads: Option<usize>,
+    stop: Stop,
     work: impl FnOnce(&Stop) -> T + Send + 'static,
 ) -> PyResult<T> {
-    let (stop, (done, mut answers)) = (Stop::default(), channel());
-    let told = stop.clone();
+    let ((done, mut answers), told) = (channel(), stop.clone());
     pool(threads)?.spawn(move || {
         // Whoever is gone needs no answer.
         let _ = done.send(work(&told));
@@ -52,9 +66,7 @@ pub fn work<T: Send + 'static>(
         answers = back;
         match answer {
             Ok(answer) => return Ok(answer),
-            Err(RecvTimeoutError::Timeout) => {
-                py.check_signals().inspect_err(|_| stop.0.store(true, Ordering::Relaxed))?
-            }
+            Err(RecvTimeoutError::Timeout) => py.check_signals().inspect_err(|_| stop.set())?,
             Err(RecvTimeoutError::Disconnected) => {
                 return Err(PyRuntimeError::new_err("a fault of piaffe's own; please report it with the question"));
             }

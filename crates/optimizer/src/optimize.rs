@@ -84,7 +84,8 @@ impl<'a> Task<'a> {
         Ok(result)
     }
 
-    fn watched(&self, settings: &Settings, from: &[Vec<f64>], watch: Watch) -> GaitResult {
+    /// The same as [`Task::search`], for who wants to know more of it or may end it.
+    pub fn watched(&self, settings: &Settings, from: &[Vec<f64>], watch: Watch) -> GaitResult {
         let Task { gait, criterion, speed } = *self;
         let started = Instant::now();
         let found = search_watched(gait, criterion, speed, settings, from, watch);

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional, Tuple, Type, TypeVar, final
 
 from . import _piaffe
-from .walk import Walk
+from ._walk import Walk
 
 if TYPE_CHECKING:
     from os import PathLike

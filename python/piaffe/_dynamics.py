@@ -8,7 +8,7 @@ X = [p, q]: `positions` p are the platform's mass centre, m (x forward, y up, an
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Callable, Optional, Tuple
+from typing import TYPE_CHECKING, Callable, Optional, Sequence, Tuple
 
 from ._piaffe import Error, Gait, Kernels
 
@@ -134,8 +134,8 @@ class Dynamics:
         return 0 if stance is None else len(self.positions)
 
     def _evaluate(
-        self, kernel: Callable[..., list[bytes]], shapes: list[Tuple[int, ...]], **inputs: ArrayLike
-    ) -> list[Any]:
+        self, kernel: Callable[..., list[bytes]], shapes: Sequence[Tuple[int, ...]], **inputs: ArrayLike
+    ) -> list[Numbers]:
         """A kernel at all states of arrays that are broadcast against each other, but for their last axis."""
         import numpy as np
 
