@@ -128,7 +128,7 @@ def _workers(executor: Executor) -> int:
     """How many an executor has, if it says so."""
     client = getattr(executor, "_client", None)
     if client is not None and hasattr(client, "ncores"):
-        return max(1, sum(client.ncores().values()))
+        return max(1, int(sum(client.ncores().values())))
     return int(getattr(executor, "_max_workers", None) or os.cpu_count() or 1)
 
 

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, NoOptimum};
 use crate::robot::unloadable;
-use crate::work::{Stop, work};
+use crate::work::{Stop, apart, work};
 use piaffe::Robot;
 use piaffe::audit::Audit;
 use piaffe::export::{mjcf as mujoco, npz as arrays, table};
@@ -34,12 +34,12 @@ fn read(json: &str) -> Result<(Value, GaitResult), String> {
 }
 
 /// The gait of a result, from the files that it carries.
-fn gait_of(result: &GaitResult) -> PyResult<Interpreted> {
+fn gait_of(py: Python<'_>, result: &GaitResult) -> PyResult<Interpreted> {
     let name = result.name();
     let Some(carried) = &result.specification else {
         return Err(Error::new_err(format!("{name} carries no files of its robot: optimize again")));
     };
-    let gait = Robot::carried(carried, &result.gait).map_err(unloadable)?;
+    let gait = apart(py, || Robot::carried(carried, &result.gait))?.map_err(unloadable)?;
     let what = "the files that it carries are those of another robot or gait (its fingerprint differs)";
     if is_of(result, gait.description()) { Ok(gait) } else { Err(Error::new_err(format!("{name}: {what}"))) }
 }
@@ -63,7 +63,7 @@ pub fn normal(json: &str) -> PyResult<String> {
 #[pyfunction]
 pub fn verify(py: Python<'_>, json: String) -> PyResult<String> {
     let (stated, result) = read(&json).map_err(Error::new_err)?;
-    let gait = gait_of(&result)?;
+    let gait = gait_of(py, &result)?;
     text(&work(py, None, Stop::default(), move |_| Audit::new(&stated, &result, &[&gait]))?)
 }
 
@@ -74,8 +74,8 @@ fn of_walk<T: Send>(
     walk: impl FnOnce(&dyn Gait, &Motion) -> Result<T, String> + Send,
 ) -> PyResult<T> {
     let (_, result) = read(json).map_err(Error::new_err)?;
-    let (motion, gait) = (motion_of(&result)?, gait_of(&result)?);
-    py.detach(|| walk(&gait, &motion)).map_err(Error::new_err)
+    let (motion, gait) = (motion_of(&result)?, gait_of(py, &result)?);
+    apart(py, || walk(&gait, &motion))?.map_err(Error::new_err)
 }
 
 fn words(why: impl std::fmt::Display) -> String {
@@ -116,7 +116,7 @@ pub fn mjcf(py: Python<'_>, json: &str) -> PyResult<String> {
 pub fn page(py: Python<'_>, json: &str) -> PyResult<String> {
     let (_, result) = read(json).map_err(Error::new_err)?;
     motion_of(&result)?;
-    let gait = gait_of(&result)?;
+    let gait = gait_of(py, &result)?;
     let page = work(py, None, Stop::default(), move |_| {
         Report::new(vec![Record::read(result, &[&gait])], Extremes::default(), None).map(|report| report.page())
     })?;

@@ -1,6 +1,7 @@
 //! Robots and their gaits.
 
 use crate::error::{Error, SpecificationError};
+use crate::work::apart;
 use piaffe::import::{Direction, FootPoint, Lock, Options, Setting, Stops, import};
 use piaffe::interpreter::{Interpreted, Unloadable};
 use piaffe::model::Gait as _;
@@ -190,8 +191,8 @@ impl Robot {
     }
 
     /// Derives a gait: 20 to 80 ms for those that are shipped.
-    fn gait(&self, name: &str) -> PyResult<Gait> {
-        Gait::new(self, name)
+    fn gait(&self, py: Python<'_>, name: &str) -> PyResult<Gait> {
+        Gait::new(py, self, name)
     }
 
     /// The same robot with other numbers, by the keys that lead to them: `{"links.thigh.mass": 1.2, "limits.friction": 0.8}`.
@@ -238,9 +239,9 @@ impl Gait {
 #[pymethods]
 impl Gait {
     #[new]
-    fn new(robot: &Robot, name: &str) -> PyResult<Gait> {
-        let derived = Arc::new(robot.robot.gait(name).map_err(unloadable)?);
-        Ok(Gait { robot: robot.clone(), name: name.into(), derived })
+    fn new(py: Python<'_>, robot: &Robot, name: &str) -> PyResult<Gait> {
+        let derived = apart(py, || robot.robot.gait(name))?.map_err(unloadable)?;
+        Ok(Gait { robot: robot.clone(), name: name.into(), derived: Arc::new(derived) })
     }
 
     /// As its robot calls it.
@@ -255,14 +256,15 @@ impl Gait {
     }
 
     /// The same gait of the robot with other numbers: `Robot.set`.
-    fn set(&self, numbers: BTreeMap<String, f64>) -> PyResult<Gait> {
-        self.robot.set(numbers)?.gait(&self.name)
+    fn set(&self, py: Python<'_>, numbers: BTreeMap<String, f64>) -> PyResult<Gait> {
+        self.robot.set(numbers)?.gait(py, &self.name)
     }
 
     /// The numbers on which it depends, with their units. Those that must stay alike have one name, what differs in braces.
     #[getter]
-    fn parameters(&self) -> BTreeMap<&'static str, (f64, &'static str)> {
-        self.derived.levers().iter().map(|lever| (lever.name, (lever.value, lever.unit))).collect()
+    fn parameters(&self, py: Python<'_>) -> PyResult<BTreeMap<&'static str, (f64, &'static str)>> {
+        let levers = apart(py, || self.derived.levers())?;
+        Ok(levers.iter().map(|lever| (lever.name, (lever.value, lever.unit))).collect())
     }
 
     fn __getnewargs__(&self) -> (Robot, &str) {

@@ -49,6 +49,12 @@ fn pool(threads: Option<usize>) -> PyResult<ThreadPool> {
     pool.map_err(|why| PyRuntimeError::new_err(format!("cannot start {threads:?} threads: {why}")))
 }
 
+/// Does what is soon done, likewise apart from Python's lock and the threads of others.
+pub fn apart<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+    let pool = pool(None)?;
+    Ok(py.detach(|| pool.install(work)))
+}
+
 /// Does some work, and asks Python in between whether to go on. Where it is interrupted, the work is told and left to end by itself.
 pub fn work<T: Send + 'static>(
     py: Python<'_>,
