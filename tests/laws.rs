@@ -54,6 +54,11 @@ fn crates_know_no_more_than_they_must() {
     assert_eq!(uses("crates/optimizer"), ["model", "number", "sqp", "verify"]);
     assert_eq!(uses("crates/import"), ["codegen"]);
     assert_eq!(uses("crates/interpreter"), ["codegen", "model"], "it derives what it gives, and asks nobody for more");
+    assert_eq!(
+        uses("crates/study"),
+        ["codegen", "interpreter", "model", "optimizer", "verify"],
+        "it knows no robot of the build"
+    );
 }
 
 #[test]

@@ -209,11 +209,30 @@ impl RobotFiles {
         robots(Path::new(""), folder)
     }
 
-    /// Changes a number where it stands: in the robot's file, or else in those of the gaits that have it.
+    /// Changes a number where it stands: in the robot's file, or else in those of the gaits that have it. A name with braces,
+    /// `links.{left,right}_shin.mass`, changes several: each becomes the value, those of opposite signs stay so.
     ///
     /// # Errors
     /// If there is none of this name, which there are.
     pub fn set(&mut self, name: &str, value: f64) -> Result<(), String> {
+        let names = spec::alternatives(name);
+        let first = names.first().and_then(|name| self.number(name)).unwrap_or(0.0);
+        for name in &names {
+            let opposite = self.number(name).is_some_and(|number| number * first < 0.0);
+            self.set_one(name, if opposite { -value } else { value })?;
+        }
+        Ok(())
+    }
+
+    /// The number of this name, in the robot's file or else in the first gait's that has it; of a name with braces the first.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        let names = spec::alternatives(name);
+        let name = names.first()?;
+        let mut texts = std::iter::once(&self.robot).chain(&self.gaits);
+        texts.find_map(|file| spec::number(&file.text, name))
+    }
+
+    fn set_one(&mut self, name: &str, value: f64) -> Result<(), String> {
         if let Some(text) = spec::set(&self.robot.text, name, value) {
             self.robot.text = text;
             return Ok(());

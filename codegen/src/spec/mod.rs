@@ -55,5 +55,5 @@ pub use locked::Tilted;
 pub use name::unusable_as_folder;
 pub use robot::{RobotFile, parse_robot};
 pub use schema::{gait_schema, robot_schema};
-pub use set::{set, unknown};
+pub use set::{alternatives, number, numbers, set, unknown};
 pub use types::*;

@@ -8,9 +8,9 @@ use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
 /// A number in a file.
-struct Number {
-    name: String,
-    value: f64,
+pub struct Number {
+    pub name: String,
+    pub value: f64,
     span: Range<usize>,
 }
 
@@ -26,6 +26,19 @@ pub fn set(text: &str, name: &str, value: f64) -> Option<String> {
         }
     }
     Some(changed)
+}
+
+/// The number of this name in the text of a file.
+pub fn number(text: &str, name: &str) -> Option<f64> {
+    numbers(text).into_iter().find(|number| number.name == name).map(|number| number.value)
+}
+
+/// The names that one with braces stands for, `links.{left,right}_shin.mass`; without braces it stands for itself.
+pub fn alternatives(name: &str) -> Vec<String> {
+    let Some((before, rest)) = name.split_once('{') else { return vec![name.into()] };
+    let Some((inside, after)) = rest.split_once('}') else { return vec![name.into()] };
+    let with = |part: &str| alternatives(&format!("{before}{}{after}", part.trim()));
+    inside.split(',').flat_map(with).collect()
 }
 
 /// The sign with which a number changes as that of this name and value does, if it does.
@@ -60,7 +73,7 @@ pub fn unknown<'t>(name: &str, texts: impl IntoIterator<Item = &'t str>) -> Stri
 }
 
 /// All numbers of a file, in its order; of one that is no TOML none.
-fn numbers(text: &str) -> Vec<Number> {
+pub fn numbers(text: &str) -> Vec<Number> {
     let mut numbers = Vec::new();
     if let Ok(table) = DeTable::parse(text) {
         in_table(table.get_ref(), "", &mut numbers);
@@ -143,6 +156,14 @@ mod tests {
                 assert_eq!(changed, list.replace(from, "[0.125,"));
             }
         }
+    }
+
+    #[test]
+    fn braces_stand_for_several_names() {
+        assert_eq!(alternatives("gravity"), ["gravity"]);
+        assert_eq!(alternatives("links.{a, b}_{c,d}.mass").len(), 4);
+        assert_eq!(alternatives("links.{a, b}_{c,d}.mass")[1], "links.a_d.mass");
+        assert_eq!(alternatives("links.{a.mass"), ["links.{a.mass"], "what is no pair of braces is part of the name");
     }
 
     #[test]

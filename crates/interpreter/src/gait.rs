@@ -43,20 +43,34 @@ impl Interpreted {
         let (mut model, derived) = kernels(&mechanism);
         let lowest = lowest(&mut model);
         let programs = programs(&model.ring, &derived);
-        Ok(Interpreted {
+        let description = description(&mechanism, key, &lowest, &derived, &programs);
+        let kernels = Kernels::new(tapes(&derived, programs.iter().map(|(program, _)| program))?);
+        Ok(Interpreted::of(robot, gait, specification, description, kernels))
+    }
+
+    /// The gait with this description and these kernels.
+    pub(crate) fn of(
+        robot: &spec::Robot,
+        gait: &spec::Gait,
+        specification: Specification,
+        description: Description,
+        kernels: Kernels,
+    ) -> Interpreted {
+        Interpreted {
             robot: robot.clone(),
             gait: gait.clone(),
             specification,
-            description: description(&mechanism, key, &lowest, &derived, &programs),
-            kernels: Kernels::new(tapes(&derived, programs.iter().map(|(program, _)| program))?),
+            description,
+            kernels,
             whole: OnceLock::new(),
             latex: OnceLock::new(),
             levers: OnceLock::new(),
-        })
+        }
     }
 }
 
-fn mechanism(robot: &spec::Robot, gait: &spec::Gait) -> Result<Mechanism, Unrunnable> {
+/// What the gait makes of a robot.
+pub fn mechanism(robot: &spec::Robot, gait: &spec::Gait) -> Result<Mechanism, Unrunnable> {
     Ok(Mechanism::new(&locked(robot, gait)?, gait))
 }
 
@@ -68,13 +82,19 @@ fn locked(robot: &spec::Robot, gait: &spec::Gait) -> Result<spec::Robot, Unrunna
 /// A structure with the tapes of all kernels, and the trait's methods that evaluate them. An input is `numbers` or a `number`.
 macro_rules! gait {
     ($($name:ident $([$of:ident: $ty:ty])? ($($input:ident: $kind:ident),*);)*) => {
-        struct Kernels {
+        /// The tapes of all kernels.
+        pub struct Kernels {
             $($name: Twins,)*
         }
 
         impl Kernels {
-            fn new(mut tapes: std::collections::BTreeMap<String, Twins>) -> Kernels {
+            pub fn new(mut tapes: std::collections::BTreeMap<String, Twins>) -> Kernels {
                 Kernels { $($name: tapes.remove(stringify!($name)).unwrap_or_default(),)* }
+            }
+
+            /// With these numbers for their first inputs.
+            pub fn with(&self, first: &[f64]) -> Kernels {
+                Kernels { $($name: self.$name.with(first),)* }
             }
         }
 

@@ -6,6 +6,7 @@
 #![forbid(unsafe_code)]
 
 mod description;
+mod family;
 mod gait;
 mod kept;
 mod robot;
@@ -14,6 +15,7 @@ mod tape;
 mod twins;
 mod whole;
 
+pub use family::Family;
 pub use gait::Interpreted;
 pub use robot::{Robot, Unloadable};
 pub use tape::{Tape, Unrunnable};

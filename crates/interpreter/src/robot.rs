@@ -1,10 +1,10 @@
 //! A robot by its files: `robot.toml` and `gaits/*.toml`.
 
-use super::gait::Interpreted;
+use super::gait::{Interpreted, Kernels};
 use super::tape::Unrunnable;
-use piaffe_codegen::spec::Gait;
+use piaffe_codegen::spec;
 use piaffe_codegen::{RobotFiles, SpecFile, Specified, specified};
-use piaffe_model::Specification;
+use piaffe_model::{Description, Specification};
 use std::path::Path;
 
 /// A robot as its files describe it; nothing has been derived yet.
@@ -95,6 +95,11 @@ impl Robot {
         self.specified.gaits.iter().map(|gait| self.key(&gait.name)).collect()
     }
 
+    /// How many phases a gait lists, if there is one of this name.
+    pub fn phases(&self, name: &str) -> Option<usize> {
+        self.find(name).map(|(gait, _)| gait.phases.list.len())
+    }
+
     /// What a gait is derived from, if there is one of this name.
     pub fn specification(&self, name: &str) -> Option<Specification> {
         let (_, file) = self.find(name)?;
@@ -102,7 +107,7 @@ impl Robot {
         Some(Specification { robot: text(&self.files.robot), gait: text(file) })
     }
 
-    fn find(&self, name: &str) -> Option<(&Gait, &SpecFile)> {
+    fn find(&self, name: &str) -> Option<(&spec::Gait, &SpecFile)> {
         self.specified.gaits.iter().zip(&self.files.gaits).find(|(gait, _)| self.key(&gait.name) == name)
     }
 
@@ -116,10 +121,35 @@ impl Robot {
     /// # Errors
     /// If there is none of this name, or the robot's numbers make some that are none.
     pub fn gait(&self, name: &str) -> Result<Interpreted, Unloadable> {
-        let unknown = || Unloadable::NoGait { gait: name.into(), known: self.gaits().join(", ") };
-        let (gait, _) = self.find(name).ok_or_else(unknown)?;
-        let specification = self.specification(name).ok_or_else(unknown)?;
+        let (gait, specification) = (self.specified_gait(name)?, self.known_specification(name)?);
         Interpreted::new(&self.specified.robot, gait, specification, name)
             .map_err(|why| Unloadable::Gait { gait: name.into(), why })
+    }
+
+    /// A gait that was derived with others, with its own description and kernels.
+    pub(crate) fn evaluated(
+        &self,
+        name: &str,
+        description: Description,
+        kernels: Kernels,
+    ) -> Result<Interpreted, Unloadable> {
+        let (gait, specification) = (self.specified_gait(name)?, self.known_specification(name)?);
+        Ok(Interpreted::of(&self.specified.robot, gait, specification, description, kernels))
+    }
+
+    pub(crate) fn specified(&self) -> &spec::Robot {
+        &self.specified.robot
+    }
+
+    pub(crate) fn specified_gait(&self, name: &str) -> Result<&spec::Gait, Unloadable> {
+        self.find(name).map(|(gait, _)| gait).ok_or_else(|| self.unknown(name))
+    }
+
+    fn known_specification(&self, name: &str) -> Result<Specification, Unloadable> {
+        self.specification(name).ok_or_else(|| self.unknown(name))
+    }
+
+    fn unknown(&self, gait: &str) -> Unloadable {
+        Unloadable::NoGait { gait: gait.into(), known: self.gaits().join(", ") }
     }
 }

@@ -7,6 +7,7 @@ use piaffe_codegen::dynamics::Kernel;
 use piaffe_codegen::program::{Id, Node, Program, Step, Term, math, terms};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, btree_map};
+use std::sync::Arc;
 
 /// A cell: constants come first, then inputs, then what is computed. Every such number is one of a place in [`Cells`].
 type Cell = u16;
@@ -48,8 +49,8 @@ pub struct Tape {
     constants: Vec<f64>,
     /// Length of each input.
     inputs: Vec<usize>,
-    operations: Vec<Operation>,
-    outputs: Vec<Cell>,
+    operations: Arc<[Operation]>,
+    outputs: Arc<[Cell]>,
 }
 
 /// Why a kernel has no tape.
@@ -88,10 +89,18 @@ impl Tape {
         CELLS.with_borrow_mut(|cells| match self.load(inputs, cells) {
             Some(()) => {
                 run(&self.operations, cells);
-                out.iter_mut().zip(&self.outputs).for_each(|(out, cell)| *out = cells[usize::from(*cell)]);
+                out.iter_mut().zip(self.outputs.iter()).for_each(|(out, cell)| *out = cells[usize::from(*cell)]);
             }
             None => out.fill(f64::NAN),
         });
+    }
+
+    /// The tape that has these numbers for its first input: one more of its constants, behind which that input stands.
+    pub fn with(&self, first: &[f64]) -> Tape {
+        let mut tape = self.clone();
+        tape.constants.extend(first);
+        tape.inputs.remove(0);
+        tape
     }
 
     /// How many numbers it gives.
@@ -248,7 +257,8 @@ impl<'a> Writer<'a> {
             }
         }
         let outputs = self.outputs()?;
-        Ok(Tape { constants: self.constants, inputs: self.inputs, operations: self.operations, outputs })
+        let (constants, operations) = (self.constants, self.operations.into());
+        Ok(Tape { constants, inputs: self.inputs, operations, outputs: outputs.into() })
     }
 
     fn node(&mut self, id: Id) -> Result<Cell, Unrunnable> {

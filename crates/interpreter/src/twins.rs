@@ -32,6 +32,11 @@ impl Which for Mode {
 }
 
 impl Twins {
+    /// With these numbers for their first inputs.
+    pub fn with(&self, first: &[f64]) -> Twins {
+        Twins(self.0.each_ref().map(|tape| tape.as_ref().map(|tape| tape.with(first))))
+    }
+
     /// Of what there is no kernel for there are no numbers: NaN.
     pub fn evaluate(&self, which: usize, inputs: &[&[f64]], out: &mut [f64]) {
         match self.0.get(which).and_then(Option::as_ref) {

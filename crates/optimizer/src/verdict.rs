@@ -37,6 +37,26 @@ impl Verdict {
     /// # Errors
     /// If the motion does not have the numbers that the gait needs, or cannot be followed to its end.
     pub fn new(gait: &dyn Gait, criterion: Criterion, speed: f64, motion: &Motion) -> Result<Verdict, VerifyError> {
+        let mut verdict = Verdict::by_receipt(gait, criterion, speed, motion)?;
+        // The longest look is spared where it can change nothing.
+        if verdict.is_optimal() {
+            verdict.certificate = certify(gait.description(), motion, speed).ok();
+            verdict.reasons.extend(verdict.certificate.iter().flat_map(broken));
+        }
+        Ok(verdict)
+    }
+
+    /// The same without a certificate, which takes many times as long as all else: what is between the receipt's instants stays
+    /// open.
+    ///
+    /// # Errors
+    /// As [`Verdict::new`].
+    pub fn by_receipt(
+        gait: &dyn Gait,
+        criterion: Criterion,
+        speed: f64,
+        motion: &Motion,
+    ) -> Result<Verdict, VerifyError> {
         let mut receipt = verify(gait.description(), motion, speed, GRID)?;
         if applies(gait.description())
             && let Ok(legs) = RealLegs::new(gait, motion)
@@ -49,11 +69,6 @@ impl Verdict {
         verdict.must("the largest violation", verdict.receipt.max_violation, VIOLATION);
         verdict.must("the cycle error", verdict.receipt.cycle_error, CYCLE_ERROR);
         verdict.must("the KKT residual", verdict.kkt_residual().unwrap_or(f64::INFINITY), KKT_RESIDUAL);
-        // The longest look is spared where it can change nothing.
-        if verdict.is_optimal() {
-            verdict.certificate = certify(gait.description(), motion, speed).ok();
-            verdict.reasons.extend(verdict.certificate.iter().flat_map(broken));
-        }
         Ok(verdict)
     }
 

@@ -179,6 +179,13 @@ impl Tally {
         Some(self.finding(description, worst))
     }
 
+    /// The inequality with the least room.
+    pub fn least(&self, description: &Description) -> Option<Finding> {
+        let inequalities = self.entries.iter().filter(|entry| entry.1.is_finite() && !entry.0.is_equality());
+        let least = inequalities.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        Some(self.finding(description, least))
+    }
+
     /// Inequalities that are met without room to spare, or not met.
     pub fn active<'b>(&'b self, description: &'b Description) -> impl Iterator<Item = Finding> + 'b {
         let active = self.entries.iter().filter(|entry| entry.1 <= ACTIVE && !entry.0.is_equality());

@@ -30,6 +30,8 @@ pub struct Receipt {
     pub speed: f64,
     /// Inequalities without room to spare: one entry per constraint and half step, at its worst time.
     pub active: Vec<Finding>,
+    /// The inequality with the least room, active or not.
+    pub least: Option<Finding>,
     pub peaks: Vec<JointPeak>,
     /// Points per half step.
     pub grid: usize,
@@ -116,6 +118,7 @@ pub fn verify(description: &Description, motion: &Motion, speed: f64, grid: usiz
         costs,
         step_length,
         speed: mean_speed,
+        least: tallies.iter().filter_map(|t| t.least(description)).min_by(|a, b| a.margin.total_cmp(&b.margin)),
         active: tallies.iter().flat_map(|t| t.active(description)).collect(),
         peaks: peaks(description, &totals, &tallies),
         grid,
