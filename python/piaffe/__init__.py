@@ -27,7 +27,8 @@ from ._result import (
     Statement,
     Status,
 )
-from ._study import Interrupted, Study, Table, study
+from ._schedule import Interrupted
+from ._study import Study, Table, study
 from ._walk import Walk
 
 __all__ = [

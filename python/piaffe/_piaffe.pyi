@@ -65,6 +65,11 @@ class Robot:
     @property
     def files(self) -> dict[str, str]:
         """The specification: paths in the robot's folder, and their texts."""
+    @property
+    def numbers(self) -> dict[str, float]:
+        """All numbers of the specification, by the names with which `set` changes them."""
+    def unknown(self, names: Sequence[str]) -> list[str]:
+        """What is wrong with these names, if they are to be those of numbers."""
     def gait(self, name: str) -> Gait:
         """Derives a gait: 20 to 80 ms for those that are shipped."""
     def set(self, numbers: Mapping[str, float]) -> Robot:
@@ -111,14 +116,34 @@ class Stop:
     def __new__(cls) -> Stop: ...
     def set(self) -> None: ...
 
+@final
+class Question:
+    """What a study asks. Its outline answers all of its points, and is small."""
+
+    def __new__(
+        cls,
+        robot: Robot,
+        names: Sequence[str],
+        rows: Sequence[Sequence[float]],
+        gaits: Sequence[str],
+        criteria: Sequence[str],
+        speeds: Sequence[float],
+        starts: int | None,
+        seed: int,
+        beyond: Sequence[str],
+    ) -> Question: ...
+    def outline(self) -> Question: ...
+    def __len__(self) -> int: ...
+    @property
+    def fingerprint(self) -> str: ...
+    @property
+    def columns(self) -> list[tuple[str, str]]: ...
+    def kind(self, number: int) -> tuple[str, str]: ...
+    def point(self, number: int) -> tuple[int, list[float]]: ...
+
 def answers(
-    robot: Robot,
-    points: Sequence[tuple[Mapping[str, float], str, str, float]],
-    starts: int | None,
-    seed: int,
-    stop: Stop,
+    outline: Question, points: Sequence[tuple[int, Sequence[float]]], threads: int | None, stop: Stop
 ) -> tuple[str, list[float]]: ...
-def unknown(robot: Robot, names: Sequence[str]) -> list[str]: ...
 def built_in() -> list[tuple[str, Robot]]: ...
 def optimize(
     gait: Gait, speed: float, criterion: str, real_legs: bool, starts: int | None, seed: int, threads: int | None

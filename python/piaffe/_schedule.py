@@ -34,7 +34,7 @@ class Chunks(Generic[T]):
     get shorter, so that all workers end together.
     """
 
-    kinds: Sequence[Hashable]
+    kind: Callable[[int], Hashable]
     workers: Workers
     send: Callable[[Executor, List[int]], Any]
     """Sends a chunk and gives its future, of `Answers`."""
@@ -99,11 +99,11 @@ class Chunks(Generic[T]):
 
     def _learn(self, chunk: List[int], seconds: List[float]) -> None:
         for task, spent in zip(chunk, seconds):
-            total, count = self._spent[self.kinds[task]]
-            self._spent[self.kinds[task]] = (total + spent, count + 1)
+            total, count = self._spent[self.kind(task)]
+            self._spent[self.kind(task)] = (total + spent, count + 1)
 
     def _predicted(self, task: int) -> Optional[float]:
-        total, count = self._spent[self.kinds[task]]
+        total, count = self._spent[self.kind(task)]
         return total / count if count else None
 
     def _next(self, pending: deque[int], workers: int) -> List[int]:

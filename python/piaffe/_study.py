@@ -1,21 +1,19 @@
-"""Many questions: a table of points in, a table of rows out, the same whoever answers them."""
+"""Many questions: a table of designs in, a table of rows out, the same whoever answers."""
 
 from __future__ import annotations
 
 import csv
-import hashlib
 import io
 import json
 import os
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
-from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, List, Optional, Tuple
+from typing import TYPE_CHECKING, Any, Iterable, List, Optional, Tuple, Union
 
 from . import _piaffe
-from ._piaffe import Error, Robot
-from ._schedule import Answers, Chunks, Interrupted, Workers
+from ._piaffe import Error, Question, Robot
+from ._schedule import Answers, Chunks, Workers
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -23,36 +21,21 @@ if TYPE_CHECKING:
     import pandas
     import pyarrow
 
-__all__ = ["Interrupted", "Row", "Study", "Table", "study"]
-
-#: The answer to a point: the columns of a table.
+#: A row of a table, by the names of its columns.
 Row = dict[str, Any]
 
-#: What a point has beside numbers of the specification.
-QUESTION = ("gait", "criterion", "speed")
-
-#: What a row says of its answer, before slopes and reason.
-ANSWER = (
-    "status",
-    "cost",
-    "energy",
-    "torque",
-    "step_length",
-    "durations",
-    "violation",
-    "cycle_error",
-    "kkt_residual",
-    "certified",
-    "active",
-)
+#: The same as the table's columns have it.
+Cells = List[Any]
 
 
 def study(
-    points: Any,
     robot: Robot,
+    designs: Any = None,
     *,
-    gait: Optional[str] = None,
-    criterion: str = "energy",
+    gait: Union[str, Iterable[str], None] = None,
+    speed: Union[float, Iterable[float]],
+    criterion: Union[str, Iterable[str]] = "energy",
+    beyond: Union[str, Iterable[str]] = (),
     starts: Optional[int] = None,
     seed: int = 1,
     executor: Optional[Workers] = None,
@@ -61,11 +44,14 @@ def study(
     retries: int = 3,
     journal: str | PathLike[str] | None = None,
 ) -> Study:
-    """The optima of many points: designs of a robot, gaits, criteria, speeds.
+    """The optima of every design with every gait, criterion and speed (m/s): a point each.
 
-    `points` are mappings, or a table (of pandas, of pyarrow, or a mapping of columns). Each has a `speed` (m/s), and may have a `gait`
-    and a `criterion`, else those given here. All other entries are numbers of the specification, as in `Robot.set`:
-    `{"speed": 0.6, "links.thigh.mass": 1.2}`. `starts` and `seed` are those of `optimize`, and so are the optima.
+    `designs` are mappings of numbers as in `Robot.set`, or a table of them (of pandas, of pyarrow, or a mapping of columns); a number
+    that a design does not name stays as it is. Without designs the robot itself is asked about, and without a `gait` all that it has.
+    `beyond` is what is told of an optimum beyond its receipt: "certificate", "slopes", "stability".
+
+    A point is sought from the optima of `robot` itself, and from `starts` random starts of `seed` that know nothing of these: 1 by
+    default, and as many as the evidence asks for where that leads to no optimum.
 
     Nothing is computed until rows are asked for: `as_completed`, `table`. Without an `executor` all cores of this machine work. With
     one (of `concurrent.futures`, Dask, loky, submitit, …), chunks of points travel to its workers, each of `chunk` seconds at least and
@@ -76,46 +62,47 @@ def study(
 
     A row, and the bytes of the table, depend on nothing but the question.
 
-    Raises `Error` where a point is none, before anything is computed.
+    Raises `Error` where there is no such question, before anything is computed.
     """
-    table = _records(points)
-    known = set(robot.gaits)
-    faults: List[str] = []
-    gait = gait or (robot.gaits[0] if len(known) == 1 else None)
-    asked: List[Row] = []
-    for k, point in enumerate(table):
-        question = {"gait": point.get("gait", gait), "criterion": point.get("criterion", criterion), "speed": point.get("speed")}
-        if question["gait"] not in known:
-            faults.append(f"point {k}: `gait` is {question['gait']!r}; the robot has {', '.join(robot.gaits)}")
-        if question["criterion"] not in ("energy", "torque"):
-            faults.append(f"point {k}: `criterion` is {question['criterion']!r}; give \"energy\" or \"torque\"")
-        numbers = {name: value for name, value in point.items() if name not in QUESTION}
-        for name, value in (("speed", question["speed"]), *numbers.items()):
-            if not _is_number(value):
-                faults.append(f"point {k}: `{name}` is {value!r}; give a number")
-        asked.append({**question, **numbers})
-    if not asked:
-        faults.append("there are no points")
-    faults += _piaffe.unknown(robot, list(dict.fromkeys(name for point in asked for name in point if name not in QUESTION)))
-    if faults:
-        more = f"\nand {len(faults) - 20} more" if len(faults) > 20 else ""
-        raise Error("\n".join(faults[:20]) + more)
-    return Study(robot, asked, starts, seed, executor, chunk, in_flight, retries, journal)
+    names, rows = _designs(robot, designs)
+    gaits, criteria, extras = (_list(given) for given in (robot.gaits if gait is None else gait, criterion, beyond))
+    speeds = [speed] if isinstance(speed, (int, float)) else list(speed)
+    question = Question(robot, names, rows, gaits, criteria, speeds, starts, seed, extras)
+    return Study(question, executor, chunk, in_flight, retries, None if journal is None else Path(journal))
 
 
-def _records(points: Any) -> List[Mapping[str, Any]]:
-    """The points of a table of any kind."""
-    if hasattr(points, "to_pylist"):
-        return list(points.to_pylist())
-    if hasattr(points, "to_dict") and hasattr(points, "columns"):
-        return list(points.to_dict("records"))
-    if isinstance(points, Mapping):
-        columns = {name: list(column) for name, column in points.items()}
+def _list(given: Union[str, Iterable[str]]) -> List[str]:
+    return [given] if isinstance(given, str) else list(given)
+
+
+def _designs(robot: Robot, designs: Any) -> Tuple[List[str], List[List[float]]]:
+    """Names and numbers of a table of any kind."""
+    if designs is None:
+        return [], [[]]
+    if hasattr(designs, "to_pylist"):
+        table = list(designs.to_pylist())
+    elif hasattr(designs, "to_dict") and hasattr(designs, "columns"):
+        table = list(designs.to_dict("records"))
+    elif isinstance(designs, Mapping):
+        columns = {name: list(column) for name, column in designs.items()}
         lengths = {name: len(column) for name, column in columns.items()}
         if len(set(lengths.values())) > 1:
-            raise Error(f"the columns of the points have different lengths: {lengths}")
-        return [dict(zip(columns, values)) for values in zip(*columns.values())]
-    return list(points)
+            raise Error(f"the columns of the designs have different lengths: {lengths}")
+        table = [dict(zip(columns, numbers)) for numbers in zip(*columns.values())]
+    else:
+        table = [dict(design) for design in designs]
+    names = list(dict.fromkeys(name for design in table for name in design))
+    faults = [
+        f"design {k}: `{name}` is {value!r}: give a number"
+        for k, design in enumerate(table)
+        for name, value in design.items()
+        if not _is_number(value)
+    ]
+    known = robot.numbers
+    faults += robot.unknown(names)
+    if faults:
+        raise Error("\n".join(faults[:20]) + (f"\nand {len(faults) - 20} more" if len(faults) > 20 else ""))
+    return names, [[float(design[name] if name in design else known[name]) for name in names] for design in table]
 
 
 def _is_number(value: Any) -> bool:
@@ -126,14 +113,12 @@ def _is_number(value: Any) -> bool:
 
 
 def _answers(
-    robot: Robot,
-    points: List[Tuple[dict[str, float], str, str, float]],
-    starts: Optional[int],
-    seed: int,
+    outline: Question,
+    points: List[Tuple[int, List[float]]],
     stop: Optional[_piaffe.Stop] = None,
-) -> Answers[Row]:
+) -> Answers[Cells]:
     """A chunk, where it is answered."""
-    rows, seconds = _piaffe.answers(robot, points, starts, seed, stop or _piaffe.Stop())
+    rows, seconds = _piaffe.answers(outline, points, 1, stop or _piaffe.Stop())
     return json.loads(rows), seconds
 
 
@@ -142,63 +127,67 @@ class Study:
 
     def __init__(
         self,
-        robot: Robot,
-        points: List[Row],
-        starts: Optional[int],
-        seed: int,
+        question: Question,
         executor: Optional[Workers],
         chunk: Tuple[float, float],
         in_flight: Optional[int],
         retries: int,
-        journal: str | PathLike[str] | None,
+        journal: Optional[Path],
     ) -> None:
-        self.robot = robot
-        self.points = points
-        self._search = (starts, seed)
+        self._question = question
         self._executor, self._chunk, self._in_flight, self._retries = executor, chunk, in_flight, retries
-        self._rows: dict[int, Row] = {}
-        self._journal = None if journal is None else _Journal(Path(journal), self._question)
-        if self._journal is not None:
-            self._rows.update(self._journal.rows)
+        self._journal = None if journal is None else _Journal(journal, question.fingerprint)
+        self._rows: dict[int, Cells] = {} if self._journal is None else dict(self._journal.rows)
 
-    @cached_property
-    def _question(self) -> str:
-        question = [_piaffe.__version__, self.robot.files, self.points, self._search]
-        return hashlib.sha256(json.dumps(question, sort_keys=True, default=float).encode()).hexdigest()
+    @property
+    def columns(self) -> List[str]:
+        """Names of the table's columns."""
+        return [name for name, _ in self._question.columns]
 
     def __len__(self) -> int:
-        return len(self.points)
+        """How many points it has."""
+        return len(self._question)
 
     @property
     def done(self) -> int:
-        """How many points are answered."""
+        """How many of them are answered."""
         return len(self._rows)
 
     def as_completed(self) -> Iterator[Row]:
         """All rows: first those that are known, then the others as they finish. `point` counts from 0."""
-        yield from (self._row(k) for k in sorted(self._rows))
+        columns = self.columns
+        known = sorted(self._rows)
+        yield from (dict(zip(columns, self._rows[k])) for k in known)
         for chunk in self._run():
-            yield from map(self._row, chunk)
+            yield from (dict(zip(columns, self._rows[k])) for k in chunk)
 
     def table(self) -> Table:
         """The rows in the order of the points, when all are answered."""
         for _ in self._run():
             pass
-        return Table(self._columns, [self._row(k) for k in range(len(self))])
+        return Table(self._question.columns, [self._rows[k] for k in range(len(self))])
 
     def _run(self) -> Iterator[List[int]]:
-        stop = _piaffe.Stop()
-        local = self._executor is None
+        """Answers what is open; chunks as they finish."""
+        open = [k for k in range(len(self)) if k not in self._rows]
+        outline, stop = self._question.outline(), _piaffe.Stop()
+        workers = self._executor
+        if workers is None and open:
+            # What the points have in common is derived on all cores, before each has a point of its own.
+            _piaffe.answers(outline, [], None, stop)
 
         def send(executor: Executor, chunk: List[int]) -> Any:
-            task = (self.robot, [self._task(k) for k in chunk], *self._search)
-            return executor.submit(_answers, *task, stop) if local else executor.submit(_answers, *task)
+            points = [self._question.point(k) for k in chunk]
+            if self._executor is None:
+                return executor.submit(_answers, outline, points, stop)
+            return executor.submit(_answers, outline, points)
 
-        workers: Workers = self._executor or (lambda: ThreadPoolExecutor(os.cpu_count()))
-        kinds = [(point["gait"], point["criterion"]) for point in self.points]
-        chunks: Chunks[Row] = Chunks(kinds, workers, send, self._chunk, self._retries, self._in_flight)
+        threads: Workers = lambda: ThreadPoolExecutor(os.cpu_count())  # noqa: E731
+        chunks: Chunks[Cells] = Chunks(
+            self._question.kind, workers or threads, send, self._chunk, self._retries, self._in_flight
+        )
         try:
-            for chunk, rows in chunks.run(self._open()):
+            for chunk, rows in chunks.run(open):
                 if self._journal is not None:
                     self._journal.add(chunk, rows)
                 self._rows.update(zip(chunk, rows))
@@ -206,65 +195,50 @@ class Study:
         finally:
             stop.set()
 
-    def _task(self, k: int) -> Tuple[dict[str, float], str, str, float]:
-        point = self.points[k]
-        return self._numbers(k), point["gait"], point["criterion"], float(point["speed"])
-
-    def _numbers(self, k: int) -> dict[str, float]:
-        return {name: float(value) for name, value in self.points[k].items() if name not in QUESTION}
-
-    def _open(self) -> List[int]:
-        """Points without an answer, those of a design side by side: its dynamics are derived once."""
-        designs: dict[Hashable, int] = {}
-        for k, point in enumerate(self.points):
-            designs.setdefault((point["gait"], *self._numbers(k).items()), k)
-        open = (k for k in range(len(self)) if k not in self._rows)
-        return sorted(open, key=lambda k: (designs[(self.points[k]["gait"], *self._numbers(k).items())], k))
-
-    @cached_property
-    def _varied(self) -> List[str]:
-        return list(dict.fromkeys(name for point in self.points for name in point if name not in QUESTION))
-
-    @property
-    def _columns(self) -> List[str]:
-        slopes = [f"slope.{name}" for name in ("speed", *self._varied)]
-        return ["point", *QUESTION, *self._varied, *ANSWER, *slopes, "reason"]
-
-    def _row(self, k: int) -> Row:
-        answer = self._rows[k]
-        slopes = {f"slope.{name}": slope for name, slope in answer.get("slopes", {}).items()}
-        known = {"point": k, **self.points[k], **answer, **slopes}
-        return {column: known.get(column) for column in self._columns}
+    def __repr__(self) -> str:
+        return f"<piaffe.Study: {self.done} of {len(self)} points answered>"
 
 
 class Table(Sequence[Row]):
-    """Rows with the same columns, in the order of the question. Durations (s) and active limits are lists."""
+    """The rows of a study in the order of its points, each with the same columns. What there is not to tell is None."""
 
-    def __init__(self, columns: List[str], rows: List[Row]) -> None:
-        self.columns = columns
+    def __init__(self, columns: List[Tuple[str, str]], rows: List[Cells]) -> None:
+        self._kinds = dict(columns)
         self._rows = rows
+
+    @property
+    def columns(self) -> List[str]:
+        return list(self._kinds)
 
     def __len__(self) -> int:
         return len(self._rows)
 
     def __getitem__(self, k: Any) -> Any:
-        return self._rows[k]
+        return [self[j] for j in range(len(self))[k]] if isinstance(k, slice) else dict(zip(self._kinds, self._rows[k]))
+
+    def column(self, name: str) -> List[Any]:
+        """All that stands in a column."""
+        k = self.columns.index(name)
+        return [row[k] for row in self._rows]
 
     def to_csv(self, path: str | PathLike[str] | None = None) -> str:
-        """A line per row. Lists are separated by semicolons; what is absent is empty."""
+        """A line per row; what there is not to tell is empty."""
         text = io.StringIO()
         lines = csv.writer(text, lineterminator="\n")
         lines.writerow(self.columns)
-        lines.writerows([_cell(row[column]) for column in self.columns] for row in self._rows)
+        lines.writerows(self._rows)
         if path is not None:
             Path(path).write_text(text.getvalue(), encoding="utf-8")
         return text.getvalue()
 
     def to_arrow(self) -> pyarrow.Table:
-        """A table of pyarrow."""
+        """Needs pyarrow."""
         import pyarrow
 
-        return pyarrow.table({column: [row[column] for row in self._rows] for column in self.columns})
+        kinds = {"integer": pyarrow.int64(), "number": pyarrow.float64(), "text": pyarrow.string()}
+        columns = zip(*self._rows) if self._rows else [()] * len(self._kinds)
+        arrays = [pyarrow.array(column, kinds[kind]) for column, kind in zip(columns, self._kinds.values())]
+        return pyarrow.table(arrays, names=self.columns)
 
     def to_parquet(self, path: str | PathLike[str]) -> None:
         """Needs pyarrow."""
@@ -279,17 +253,7 @@ class Table(Sequence[Row]):
         return pandas.DataFrame(self._rows, columns=self.columns)
 
     def __repr__(self) -> str:
-        return f"<piaffe.Table: {len(self)} rows of {len(self.columns)} columns>"
-
-
-def _cell(value: Any) -> str:
-    if value is None:
-        return ""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, list):
-        return ";".join(map(_cell, value))
-    return repr(value) if isinstance(value, float) else str(value)
+        return f"<piaffe.Table: {len(self)} rows of {len(self._kinds)} columns>"
 
 
 class _Journal:
@@ -297,17 +261,21 @@ class _Journal:
 
     def __init__(self, path: Path, question: str) -> None:
         self._path = path
-        self.rows: dict[int, Row] = {}
+        self.rows: dict[int, Cells] = {}
         lines = path.read_bytes().splitlines(keepends=True) if path.exists() else []
         whole = [line for line in lines if line.endswith(b"\n")]
-        if whole and json.loads(whole[0]) != {"question": question}:
-            raise Error(f"{path} is the journal of another study: give another file, or remove it")
+        if whole and whole[0] != self._first(question):
+            raise Error(f"{path} is the journal of another study, or none: give another file, or remove it")
         for line in whole[1:]:
-            entry = json.loads(line)
-            self.rows[entry["point"]] = entry["row"]
+            point, cells = json.loads(line)
+            self.rows[point] = cells
         if not whole or whole != lines:
-            path.write_bytes(b"".join(whole) or json.dumps({"question": question}).encode() + b"\n")
+            path.write_bytes(b"".join(whole) or self._first(question))
 
-    def add(self, points: List[int], rows: List[Row]) -> None:
+    @staticmethod
+    def _first(question: str) -> bytes:
+        return json.dumps({"piaffe study": question}).encode() + b"\n"
+
+    def add(self, points: List[int], rows: List[Cells]) -> None:
         with self._path.open("a", encoding="utf-8") as file:
-            file.writelines(json.dumps({"point": k, "row": row}) + "\n" for k, row in zip(points, rows))
+            file.writelines(json.dumps(entry) + "\n" for entry in zip(points, rows))

@@ -32,7 +32,7 @@ mod _piaffe {
     #[pymodule_export]
     use super::run;
     #[pymodule_export]
-    use super::study::{answers, unknown};
+    use super::study::{Question, answers};
     #[pymodule_export]
     use super::work::Stop;
     use pyo3::prelude::*;

@@ -190,6 +190,19 @@ impl Robot {
         gaits.chain([("robot.toml".into(), robot)]).collect()
     }
 
+    /// All numbers of the specification, by the names with which `set` changes them.
+    #[getter]
+    fn numbers(&self) -> BTreeMap<String, f64> {
+        self.robot.files().numbers().into_iter().collect()
+    }
+
+    /// What is wrong with these names, if they are to be those of numbers.
+    fn unknown(&self, names: Vec<String>) -> Vec<String> {
+        let mut files = self.robot.files().clone();
+        // Any number will do: none is used.
+        names.iter().filter_map(|name| files.set(name, 1.0).err()).collect()
+    }
+
     /// Derives a gait: 20 to 80 ms for those that are shipped.
     fn gait(&self, py: Python<'_>, name: &str) -> PyResult<Gait> {
         Gait::new(py, self, name)
