@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from os import PathLike
 from typing import final
 
+__all__: list[str]
 __version__: str
 
 class Error(ValueError):

@@ -51,7 +51,7 @@ class Chunks(Generic[T]):
         pending: deque[int] = deque(tasks)
         running: dict[Any, List[int]] = {}
         failed: dict[int, int] = defaultdict(int)
-        executor = self._executor()
+        executor, renewed = self._executor(), 0
         count = _workers(executor)
         try:
             while pending or running:
@@ -77,10 +77,12 @@ class Chunks(Generic[T]):
                         if isinstance(why, BrokenExecutor):
                             broken = why
                         continue
+                    renewed = 0
                     self._learn(chunk, seconds)
                     yield chunk, answers
                 if broken is not None and not running:
-                    executor = self._renewed(executor, broken)
+                    renewed += 1
+                    executor = self._renewed(executor, broken, renewed)
         finally:
             for future in running:
                 future.cancel()
@@ -90,10 +92,12 @@ class Chunks(Generic[T]):
     def _executor(self) -> Executor:
         return self.workers() if callable(self.workers) else self.workers
 
-    def _renewed(self, executor: Executor, why: BaseException) -> Executor:
+    def _renewed(self, executor: Executor, why: BaseException, times: int) -> Executor:
         if not callable(self.workers):
             remedy = "give a function that makes one, executor=lambda: ProcessPoolExecutor(), and it goes on by itself"
             raise Interrupted(f"the executor is broken ({why}): {remedy}; or go on with another one") from why
+        if times > self.retries:
+            raise Interrupted(f"{times} executors, one after another, broke before they had answered anything ({why})") from why
         executor.shutdown(wait=False)
         return self.workers()
 

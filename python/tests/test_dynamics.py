@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Callable
+from typing import Any, Callable
 
 import numpy as np
 import pytest
@@ -28,7 +28,7 @@ def test_kernels_are_the_programs(trot: piaffe.Gait, program: Callable[..., str]
     dynamics = piaffe.dynamics(trot)
     q, qd, qdd = x[:, 2:], xd[:, 2:], xdd[:, 2:]
     kinetic, potential = dynamics.energy(x, xd)
-    for found, of in [
+    pairs: list[tuple[Any, Callable[[Any], Any]]] = [
         (dynamics.inertia(q), lambda state: state["A"]),
         (dynamics.bias(q, qd), lambda state: state["H"]),
         (kinetic, lambda state: state["kinetic_energy"]),
@@ -36,7 +36,8 @@ def test_kernels_are_the_programs(trot: piaffe.Gait, program: Callable[..., str]
         (dynamics.foot(2, x), lambda state: state["d2"]),
         (dynamics.foot_jacobian(2, q), lambda state: state["D2"]),
         (dynamics.inverse(q, qd, qdd[:, 1:], stance=2).force, lambda state: state["ss2"]["inverse"]["F"]),
-    ]:
+    ]
+    for found, of in pairs:
         np.testing.assert_array_equal(found, np.array([of(state) for state in stated]))
 
 
