@@ -190,8 +190,12 @@ def test_chunks_are_as_long_as_was_asked(quadruped: piaffe.Robot) -> None:
     # Tasks of one kind take 0.1 s, of the other 1 s.
     kinds = ["short" if k < 200 else "long" for k in range(240)]
     took = {"short": 0.1, "long": 1.0}
+
+    def seconds(*tasks: int) -> float:
+        return took[kinds[tasks[0]]]
+
     chunks: Chunks[None] = Chunks(
-        lambda task: kinds[task], Here(), lambda pool, chunk: pool.submit(lambda task: took[kinds[task]], *chunk), (1.0, 5.0), 0, 1
+        lambda task: kinds[task], Here(), lambda pool, chunk: pool.submit(seconds, *chunk), (1.0, 5.0), 0, 1
     )
     assert sorted(task for chunk, _ in chunks.run(range(240)) for task in chunk) == list(range(240))
     lengths = [sum(took[kinds[task]] for task in chunk) for chunk in sent]
