@@ -35,7 +35,7 @@ def study(
     gait: Union[str, Iterable[str], None] = None,
     speed: Union[float, Iterable[float]],
     criterion: Union[str, Iterable[str]] = "energy",
-    beyond: Union[str, Iterable[str]] = (),
+    also: Union[str, Iterable[str]] = (),
     starts: Optional[int] = None,
     seed: int = 1,
     executor: Optional[Workers] = None,
@@ -48,7 +48,7 @@ def study(
 
     `designs` are mappings of numbers as in `Robot.set`, or a table of them (of pandas, of pyarrow, or a mapping of columns); a number
     that a design does not name stays as it is. Without designs the robot itself is asked about, and without a `gait` all that it has.
-    `beyond` is what is told of an optimum beyond its receipt: "certificate", "slopes", "stability".
+    `also` is what is told of an optimum beyond its receipt: "certificate", "slopes", "stability".
 
     A point is sought from the optima of `robot` itself, and from `starts` random starts of `seed` that know nothing of these: 1 by
     default, and as many as the evidence asks for where that leads to no optimum.
@@ -65,7 +65,7 @@ def study(
     Raises `Error` where there is no such question, before anything is computed.
     """
     names, rows = _designs(robot, designs)
-    gaits, criteria, extras = (_list(given) for given in (robot.gaits if gait is None else gait, criterion, beyond))
+    gaits, criteria, extras = (_list(given) for given in (robot.gaits if gait is None else gait, criterion, also))
     speeds = [speed] if isinstance(speed, (int, float)) else list(speed)
     question = Question(robot, names, rows, gaits, criteria, speeds, starts, seed, extras)
     return Study(question, executor, chunk, in_flight, retries, None if journal is None else Path(journal))
@@ -222,11 +222,11 @@ class Table(Sequence[Row]):
         return [row[k] for row in self._rows]
 
     def to_csv(self, path: str | PathLike[str] | None = None) -> str:
-        """A line per row; what there is not to tell is empty."""
+        """A line per row, as `piaffe study` writes it; what there is not to tell is empty."""
         text = io.StringIO()
         lines = csv.writer(text, lineterminator="\n")
         lines.writerow(self.columns)
-        lines.writerows(self._rows)
+        lines.writerows(map(_written, row) for row in self._rows)
         if path is not None:
             Path(path).write_text(text.getvalue(), encoding="utf-8")
         return text.getvalue()
@@ -254,6 +254,14 @@ class Table(Sequence[Row]):
 
     def __repr__(self) -> str:
         return f"<piaffe.Table: {len(self)} rows of {len(self._kinds)} columns>"
+
+
+def _written(cell: Any) -> Any:
+    """As the program writes it: the shortest digits that are the number, and exponents without more."""
+    if not isinstance(cell, float) or "e" not in repr(cell):
+        return cell
+    digits, exponent = repr(cell).split("e")
+    return f"{digits}e{int(exponent)}"
 
 
 class _Journal:

@@ -20,7 +20,7 @@ pub struct Question {
 fn beyond(name: &str) -> PyResult<Beyond> {
     let known = || Beyond::ALL.map(|beyond| format!("\"{}\"", beyond.name())).join(", ");
     let found = Beyond::ALL.into_iter().find(|beyond| beyond.name() == name);
-    found.ok_or_else(|| Error::new_err(format!("`beyond` has \"{name}\": give some of {}", known())))
+    found.ok_or_else(|| Error::new_err(format!("`also` has \"{name}\": give some of {}", known())))
 }
 
 /// A cell as JSON has it.

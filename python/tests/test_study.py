@@ -41,7 +41,7 @@ def processes() -> Executor:
 
 
 def test_rows_are_what_one_by_one_is_found(quadruped: piaffe.Robot, table: str) -> None:
-    rows = ask(quadruped, beyond=["certificate", "slopes", "stability"]).table()
+    rows = ask(quadruped, also=["certificate", "slopes", "stability"]).table()
     assert [row["point"] for row in rows] == list(range(len(rows))) and len(rows) == 24
     gaits = {design: [quadruped.set(numbers).gait(gait) for gait in QUESTION["gait"]] for design, numbers in enumerate(DESIGNS)}
     for row in rows[::5]:
@@ -57,6 +57,17 @@ def test_rows_are_what_one_by_one_is_found(quadruped: piaffe.Robot, table: str) 
         pushed = alone.stability
         assert pushed is not None and row["push.by_clock"] == pytest.approx(pushed.by_clock, rel=1e-3)
         assert (row["push.by_phase"] is None) == (pushed.by_phase is None)
+
+
+def test_the_command_line_writes_the_same_table(
+    quadruped: piaffe.Robot, program: Callable[..., str], tmp_path: Path
+) -> None:
+    masses = ["--vary", "links.thigh.mass=1.4,1.6", "--vary", "limits.friction=0.7"]
+    question = ["trot", "--speed", "0.5,4.0", "--criterion", "torque", "--also", "slopes"]
+    program("study", *question, *masses, "--out", str(tmp_path))
+    designs = {"links.thigh.mass": [1.4, 1.6], "limits.friction": [0.7, 0.7]}
+    study = piaffe.study(quadruped, designs, gait="trot", speed=[0.5, 4.0], criterion="torque", also="slopes")
+    assert study.table().to_csv() == (tmp_path / "study.csv").read_text(encoding="utf-8")
 
 
 def test_a_number_that_a_design_does_not_name_stays(quadruped: piaffe.Robot) -> None:
@@ -214,8 +225,8 @@ def test_what_cannot_be_asked_is_told_before_anything_is_computed(quadruped: pia
         ask(quadruped, gait="gallop", speed=-1.0)
     with pytest.raises(piaffe.Error, match='`criterion` is "work"'):
         ask(quadruped, criterion="work")
-    with pytest.raises(piaffe.Error, match='`beyond` has "proof": give some of "certificate"'):
-        ask(quadruped, beyond="proof")
+    with pytest.raises(piaffe.Error, match='`also` has "proof": give some of "certificate"'):
+        ask(quadruped, also="proof")
     with pytest.raises(piaffe.Error, match="there is no design"):
         ask(quadruped, [])
     with pytest.raises(piaffe.Error, match="different lengths"):

@@ -1,4 +1,4 @@
-//! The folder of a sweep: its points as files, and `journal.jsonl`, a line per step that was taken.
+//! The folder of a sweep or a study: what was found as files, and `journal.jsonl`, a line per step that was taken.
 //!
 //! The journal is only ever appended to. An end that was cut off is dropped, a line that is damaged is
 //! reported; either step is taken again. What was found with other settings stays: with these settings
@@ -28,7 +28,10 @@ struct Entry {
     outcome: Value,
 }
 
-/// A folder that a sweep writes to, and knows from earlier runs.
+/// Name of the journal in its folder.
+const JOURNAL: &str = "journal.jsonl";
+
+/// A folder that a sweep or a study writes to, and knows from earlier runs.
 pub struct Folder {
     path: PathBuf,
     pub bar: ProgressBar,
@@ -45,17 +48,17 @@ impl Folder {
     /// Opens or makes the folder. Damage is told on the bar's stream.
     ///
     /// # Errors
-    /// If it cannot be written to, or another sweep is doing so.
+    /// If it cannot be written to, or another run is doing so.
     pub fn open(path: &Path, bar: ProgressBar) -> anyhow::Result<Folder> {
         std::fs::create_dir_all(path).with_context(|| format!("cannot create {}", input::name(path)))?;
-        let name = path.join("journal.jsonl");
+        let name = path.join(JOURNAL);
         let cannot = || format!("cannot use {}", input::name(&name));
         if name.metadata().is_ok_and(|there| !there.is_file()) {
             bail!("{}: it is no file", cannot());
         }
         let mut journal = OpenOptions::new().read(true).append(true).create(true).open(&name).with_context(cannot)?;
         if let Err(TryLockError::WouldBlock) = journal.try_lock() {
-            bail!("another sweep is writing to {}: wait for it, or give another --out", input::name(path));
+            bail!("another run is writing to {}: wait for it, or give another --out", input::name(path));
         }
         whole::tidy(path);
         let mut bytes = Vec::new();
@@ -64,15 +67,7 @@ impl Folder {
         if whole < bytes.len() {
             journal.set_len(whole as u64).with_context(cannot)?;
         }
-        let mut known = HashMap::new();
-        for (n, line) in bytes[..whole].split(|b| *b == b'\n').enumerate().filter(|(_, line)| !line.is_empty()) {
-            match serde_json::from_slice::<Entry>(line) {
-                Ok(entry) => drop(known.insert(entry.step, entry.outcome)),
-                Err(error) => {
-                    note(&format!("{}:{}: {error}; this step is taken again", input::name(&name), n + 1));
-                }
-            }
-        }
+        let known = entries(&name, &bytes[..whole]);
         Ok(Folder { path: path.into(), bar, state: Mutex::new(State { journal, known, failure: None }) })
     }
 
@@ -116,6 +111,29 @@ impl Folder {
         // Whoever panicked left whole entries behind.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// What another run has found in a folder, which is only read.
+///
+/// # Errors
+/// If its journal cannot be read.
+pub fn found(folder: &Path) -> anyhow::Result<HashMap<String, Value>> {
+    let name = folder.join(JOURNAL);
+    let bytes = std::fs::read(&name).with_context(|| format!("cannot read {}", input::name(&name)))?;
+    let whole = bytes.iter().rposition(|b| *b == b'\n').map_or(0, |last| last + 1);
+    Ok(entries(&name, &bytes[..whole]))
+}
+
+/// The steps of a journal with their outcomes. Damage is told.
+fn entries(name: &Path, bytes: &[u8]) -> HashMap<String, Value> {
+    let mut known = HashMap::new();
+    for (n, line) in bytes.split(|b| *b == b'\n').enumerate().filter(|(_, line)| !line.is_empty()) {
+        match serde_json::from_slice::<Entry>(line) {
+            Ok(entry) => drop(known.insert(entry.step, entry.outcome)),
+            Err(error) => note(&format!("{}:{}: {error}; this step is taken again", input::name(name), n + 1)),
+        }
+    }
+    known
 }
 
 /// The step that says how a run was set up.
@@ -179,7 +197,7 @@ impl Journal for Folder {
             Ok(written?)
         });
         if let Err(error) = written {
-            state.failure.get_or_insert(error.context("cannot write the sweep's journal"));
+            state.failure.get_or_insert(error.context("cannot write the journal"));
         }
         state.known.insert(entry.step, entry.outcome);
     }

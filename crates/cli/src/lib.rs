@@ -15,11 +15,13 @@ mod journal;
 mod lift;
 mod main_job;
 mod manual;
+mod merge;
 mod model;
 mod optimize;
 mod output;
 mod report;
 mod robots;
+mod study;
 mod summary;
 mod sweep;
 mod verify;
@@ -246,6 +248,24 @@ enum Command {
         #[arg(long, default_value_t = 1)]
         seed: u64,
     },
+    /// Answer many robots that differ in some numbers: a table with a row for each robot, gait, criterion and speed.
+    ///
+    /// Numbers are named as for --set. Every row is written as it is found; a study that was interrupted goes on where it
+    /// stopped. Every optimum is local: sought from the base robot's optima, and from starts that know nothing of them.
+    #[command(
+        after_help = "Examples:\n  piaffe study trot --speed 0.6 --vary links.thigh.mass=1.0..2.0:0.1\n  piaffe study trot --speed 0.6 --vary links.thigh.mass=1.0..2.0 --vary limits.friction=0.4..1.0 --sample 500\n  piaffe study --speed 0.4,0.6 --designs table.csv --shard 2/8 --out part2"
+    )]
+    Study(study::Arguments),
+    /// Put the parts of a study together that were answered with --shard.
+    #[command(after_help = "Example:\n  piaffe merge part1 part2 --out study")]
+    Merge {
+        /// Folders of the parts.
+        #[arg(required = true, value_name = "DIR")]
+        parts: Vec<PathBuf>,
+        /// Folder for the whole.
+        #[arg(long = "out", value_name = "DIR", default_value = "study")]
+        folder: PathBuf,
+    },
     /// Write the completions of a shell to standard output.
     #[command(after_help = "Example:\n  piaffe completions bash > ~/.local/share/bash-completion/completions/piaffe")]
     Completions { shell: clap_complete::Shell },
@@ -276,6 +296,8 @@ impl Arguments {
             Some(Command::Dynamics { gait, .. } | Command::Model { gait, .. } | Command::Optimize { gait, .. }) => {
                 robots::note_of([gait.as_str()]);
             }
+            Some(Command::Study(study)) if study.gaits.is_empty() => robots::note_of(first()),
+            Some(Command::Study(study)) => robots::note_of(study.gaits.iter().map(String::as_str)),
             Some(Command::Sweep { gait, .. }) if gait.is_empty() => robots::note_of(first()),
             Some(Command::Sweep { gait, .. }) => robots::note_of(gait.iter().map(String::as_str)),
             // Results carry their robots.
@@ -376,15 +398,21 @@ fn answer(arguments: Arguments) -> anyhow::Result<bool> {
         Some(Command::Sweep { gait, criterion, speeds, real_legs, folder, starts, seed }) => {
             let named = || gait.iter().map(|gait| by_name(gait)).collect::<anyhow::Result<_>>();
             let gaits = if gait.is_empty() { robots::first()? } else { named()? };
-            let wanted = |c: &Criterion| criterion.iter().any(|w| w == "all" || w == c.name());
-            let criteria: Vec<Criterion> = Criterion::ALL.into_iter().filter(wanted).collect();
-            sweep::run(&gaits, real_legs, &criteria, &speeds, &folder, &settings(starts, seed))
+            sweep::run(&gaits, real_legs, &criteria(&criterion), &speeds, &folder, &settings(starts, seed))
         }
+        Some(Command::Study(arguments)) => study::run(arguments),
+        Some(Command::Merge { parts, folder }) => merge::run(&parts, &folder),
     }
 }
 
 fn settings(starts: Option<u32>, seed: u64) -> Settings {
     Settings { starts: starts.map(|n| n as usize), seed }
+}
+
+/// Those that are wanted by name, or all.
+fn criteria(wanted: &[String]) -> Vec<Criterion> {
+    let wanted = |c: &Criterion| wanted.iter().any(|w| w == "all" || w == c.name());
+    Criterion::ALL.into_iter().filter(wanted).collect()
 }
 
 fn criterion_names() -> PossibleValuesParser {

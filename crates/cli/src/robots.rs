@@ -188,6 +188,30 @@ pub fn first() -> anyhow::Result<Vec<Loaded>> {
     choices().iter().filter(|choice| !choice.key.contains('/')).map(Choice::gait).collect()
 }
 
+/// The robot whose gaits these are, as its files describe it, and their names; without names all gaits of the robot that needs none.
+///
+/// # Errors
+/// If they are of several robots, or there are mistakes in its files.
+pub fn robot_of(names: &[String]) -> anyhow::Result<(Robot, Vec<String>)> {
+    let first = || choices().iter().filter(|choice| !choice.key.contains('/')).map(|choice| choice.key.to_string());
+    let names: Vec<String> = if names.is_empty() { first().collect() } else { names.to_vec() };
+    let modules: BTreeSet<&str> = names.iter().map(|name| built::module(name)).collect();
+    let [module] = Vec::from_iter(modules)[..] else {
+        return Err(anyhow!("a study is about one robot: {} are gaits of several", names.join(", ")));
+    };
+    let of_robot = || choices().iter().filter(|choice| built::module(choice.key) == module);
+    let robot = match of_robot().map(|choice| &choice.origin).next() {
+        Some(Origin::Files(robot)) => (**robot).clone().map_err(|why| anyhow!("{why}"))?,
+        _ => {
+            let gaits: Vec<Loaded> = of_robot()
+                .filter_map(|choice| if let Origin::Built(gait) = choice.origin { Some(gait) } else { None })
+                .collect();
+            Robot::new(of_build_files(module, &gaits))?
+        }
+    };
+    Ok((robot, names))
+}
+
 /// Says which files have changed since the build, so that they are used as they stand: of the robots of these gaits.
 pub fn note_of<'k>(keys: impl IntoIterator<Item = &'k str>) {
     /// Files that are named.

@@ -62,7 +62,7 @@ impl<'s> Answers<'s> {
     pub fn answer(&self, point: &Point) -> Row {
         match self.gait(point) {
             Ok(gait) => self.of_gait(point, &gait),
-            Err(why) => self.without(point, Status::NoRobot, why.to_string()),
+            Err(why) => self.without(point, Status::NoRobot, brief(&why)),
         }
     }
 
@@ -201,6 +201,11 @@ fn member(
         // What cannot be derived for all may be for one.
         _ => robot.gait(gait),
     }
+}
+
+/// What is wrong with a specification in a line; all of it is told where the robot is asked for alone.
+fn brief(why: &Unloadable) -> String {
+    why.to_string().lines().next().unwrap_or_default().into()
 }
 
 /// The first of the names that one with braces stands for.

@@ -57,6 +57,28 @@ pub enum Cell {
     Text(Option<String>),
 }
 
+impl Cell {
+    pub fn is_there(&self) -> bool {
+        match self {
+            Cell::Integer(integer) => integer.is_some(),
+            Cell::Number(number) => number.is_some(),
+            Cell::Text(text) => text.is_some(),
+        }
+    }
+
+    pub fn integer(&self) -> Option<u64> {
+        if let Cell::Integer(integer) = self { *integer } else { None }
+    }
+
+    pub fn number(&self) -> Option<f64> {
+        if let Cell::Number(number) = self { *number } else { None }
+    }
+
+    pub fn text(&self) -> Option<&str> {
+        if let Cell::Text(text) = self { text.as_deref() } else { None }
+    }
+}
+
 /// Between entries of a list in a cell.
 const BETWEEN: &str = "; ";
 

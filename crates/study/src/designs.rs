@@ -1,7 +1,9 @@
 //! The robots of a study: the base robot with other numbers where these stand in its specification.
 
 use crate::vary::{Over, Vary};
+use piaffe_codegen::{RobotFiles, SpecFile};
 use piaffe_interpreter::{Robot, Unloadable};
+use std::path::Path;
 
 /// More designs than this are a slip of the pen.
 const MOST: usize = 10_000_000;
@@ -121,7 +123,7 @@ impl Designs {
     /// # Errors
     /// As for [`Designs::robot`].
     pub fn robot_with(&self, base: &Robot, numbers: &[f64]) -> Result<Robot, Unloadable> {
-        let mut files = base.files().clone();
+        let mut files = placeless(base.files());
         for (name, value) in self.names.iter().zip(numbers) {
             files.set(name, *value).map_err(Unloadable::Specification)?;
         }
@@ -152,6 +154,19 @@ impl Designs {
         designs.sort_unstable();
         designs.dedup();
         designs
+    }
+}
+
+/// Files whose names do not say where they are, so that nothing depends on that.
+pub(crate) fn placeless(files: &RobotFiles) -> RobotFiles {
+    let file = |file: &SpecFile| {
+        let name = Path::new(&file.path).file_name().unwrap_or_default();
+        SpecFile { path: name.to_string_lossy().into_owned(), text: file.text.clone() }
+    };
+    RobotFiles {
+        module: files.module.clone(),
+        robot: file(&files.robot),
+        gaits: files.gaits.iter().map(file).collect(),
     }
 }
 

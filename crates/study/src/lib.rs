@@ -1,20 +1,26 @@
 //! Studies: the optimal gaits of many robots that differ in some numbers, a row each.
 //!
 //! `vary` is what is to vary, `designs` the robots that come of it, `study` the question, whose points are designs with a gait, a
-//! criterion and a speed; `answers` makes of each point a `row`, and `column` says what rows are as a table.
+//! criterion and a speed; `question` is one that is written down, `shard` a part of it. `answers` makes of each point a `row`, and
+//! `column` says what rows are as a table, which `table` writes.
 
 #![forbid(unsafe_code)]
 
 mod answers;
 mod column;
 mod designs;
+mod question;
 mod row;
+mod shard;
 mod study;
+pub mod table;
 mod vary;
 
 pub use answers::Answers;
 pub use column::{Cell, Column, Kind};
 pub use designs::Designs;
+pub use question::{File, Question, Unreadable};
 pub use row::{Beyond, Optimum, Pushed, Row, Slopes, Status};
+pub use shard::Shard;
 pub use study::{FEW, Point, Search, Study};
 pub use vary::{Over, Vary};

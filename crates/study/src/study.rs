@@ -1,6 +1,6 @@
 //! What is asked: every design with every gait, criterion and speed, a numbered point each.
 
-use crate::designs::Designs;
+use crate::designs::{Designs, placeless};
 use crate::row::Beyond;
 use piaffe_interpreter::Robot;
 use piaffe_model::hash;
@@ -128,7 +128,7 @@ impl Study {
         let version = env!("CARGO_PKG_VERSION");
         let asked = format!(
             "{version} {:?} {designs:?} {gaits:?} {criteria:?} {speeds:?} {search:?} {beyond:?}",
-            robot.files()
+            placeless(robot.files())
         );
         format!("{:016x}", hash(&asked))
     }

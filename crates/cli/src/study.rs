@@ -1,0 +1,178 @@
+//! `piaffe study`: the optimal gaits of many robots that differ in some numbers, resumed where an earlier run stopped.
+
+use super::digits::decimal;
+use super::journal::Folder;
+use super::{criteria, gait_names, input, output, robots, sweep, whole};
+use anyhow::{Context, bail};
+use clap::builder::PossibleValuesParser;
+use indicatif::{ProgressBar, ProgressStyle};
+use piaffe_optimizer::search::journal::Journal;
+use piaffe_study::{Answers, Beyond, Column, Designs, Over, Question, Row, Search, Shard, Study, Vary, table};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// All gaits of the first robot if none is given.
+    #[arg(value_parser = gait_names(), value_name = "GAIT")]
+    pub gaits: Vec<String>,
+    /// Mean forward speeds: a list, or FROM..TO:STEP, m/s.
+    #[arg(long, value_parser = sweep::parse_speeds)]
+    speed: std::vec::Vec<f64>,
+    /// energy, torque or all; may be given several times.
+    #[arg(long, value_parser = PossibleValuesParser::new(["energy", "torque", "all"]), default_value = "all")]
+    criterion: Vec<String>,
+    /// A number of the specification and its values: NAME=FROM..TO:STEP or NAME=A,B,C; may be given several times, for every
+    /// combination. Several numbers at once with braces: links.{left,right}_shin.mass=1.0..2.0:0.1.
+    #[arg(long, value_name = "NAME=VALUES")]
+    vary: Vec<Vary>,
+    /// So many robots spread evenly over the intervals of --vary, NAME=FROM..TO, instead of every combination.
+    #[arg(long, value_name = "N", requires = "vary", value_parser = clap::value_parser!(u32).range(1..))]
+    sample: Option<u32>,
+    /// A CSV table of robots: a column for each number under its name, a line for each robot.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["vary", "sample"])]
+    designs: Option<PathBuf>,
+    /// What to tell of each optimum beyond its receipt; each takes about as long as finding it.
+    #[arg(long, value_delimiter = ',', value_parser = PossibleValuesParser::new(Beyond::ALL.map(Beyond::name)))]
+    also: Vec<String>,
+    /// Answer one of N parts, I/N; `piaffe merge` puts them together.
+    #[arg(long, value_name = "I/N", default_value_t = Shard::WHOLE, hide_default_value = true)]
+    shard: Shard,
+    /// Folder for the table and the page.
+    #[arg(long = "out", value_name = "DIR", default_value = "study")]
+    folder: PathBuf,
+    /// Starts for every row besides those from the base robot's optima; if it is not given, one, and where all these lead to no
+    /// optimum as many as for `optimize`.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    starts: Option<u32>,
+    /// Of the random starts.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+/// What a folder's rows are about.
+#[derive(PartialEq, Serialize, Deserialize)]
+pub struct Asked {
+    pub shard: Shard,
+    pub question: Question,
+}
+
+/// Name of it in the folder.
+pub const ASKED: &str = "study.json";
+
+/// The step of a journal that answers a point.
+pub fn step(fingerprint: &str, point: usize) -> String {
+    format!("study {fingerprint} point {point}")
+}
+
+pub fn run(arguments: Arguments) -> anyhow::Result<bool> {
+    let (shard, path) = (arguments.shard, arguments.folder.clone());
+    let study = asked(arguments)?;
+    let asked = Asked { shard, question: Question::from(&study) };
+    let points = shard.points(&study);
+    let folder = Folder::open(&path, progress(points.len()))?;
+    if let Ok(earlier) = input::read_json::<Asked>(&path.join(ASKED))
+        && earlier.question.fingerprint != asked.question.fingerprint
+    {
+        output::note(&format!("the last study in {} was another one: all is answered anew", input::name(&path)));
+    }
+    output::write_json(&path.join(ASKED), &asked)?;
+    let answers = Answers::new(&study);
+    let rows: Vec<Row> = points.par_iter().map(|point| row(&answers, *point, &asked.question, &folder)).collect();
+    folder.bar.finish_and_clear();
+    if let Some(error) = folder.failure() {
+        return Err(error);
+    }
+    write(&study, shard, &answers, &rows, &path)
+}
+
+/// The study that is asked for, if nothing is wrong with it.
+fn asked(arguments: Arguments) -> anyhow::Result<Study> {
+    let Arguments { gaits, speed, criterion, vary, sample, designs, also, starts, seed, .. } = arguments;
+    let (robot, gaits) = robots::robot_of(&gaits)?;
+    let wanted = |beyond: &Beyond| also.iter().any(|name| name == beyond.name());
+    let made = match (&designs, sample) {
+        (Some(file), _) => {
+            table::designs(&input::read_text(file)?).map_err(|why| format!("{}: {why}", input::name(file)))
+        }
+        (None, Some(count)) => Designs::sample(&vary, count as usize),
+        (None, None) if vary.is_empty() => Ok(Designs::base()),
+        (None, None) => Designs::grid(&vary),
+    };
+    // Names are looked at whether there are designs or not, so that everything wrong is said at once.
+    let named =
+        || Designs::grid(&vary.iter().map(|v| Vary { over: Over::Values(vec![1.0]), ..v.clone() }).collect::<Vec<_>>());
+    let unmade = made.as_ref().err().cloned();
+    let study = Study {
+        robot,
+        designs: made.or_else(|_| named()).unwrap_or_else(|_| Designs::base()),
+        gaits,
+        criteria: criteria(&criterion),
+        speeds: speed,
+        search: Search { starts: starts.map(|n| n as usize), seed },
+        beyond: Beyond::ALL.into_iter().filter(wanted).collect(),
+    };
+    let faults: Vec<String> = unmade.into_iter().chain(study.faults()).collect();
+    if !faults.is_empty() {
+        bail!("this study cannot be asked:\n{}", faults.join("\n"));
+    }
+    Ok(study)
+}
+
+/// The row of a point: the one that an earlier run has found, or a new one.
+fn row(answers: &Answers, point: usize, question: &Question, folder: &Folder) -> Row {
+    let step = step(&question.fingerprint, point);
+    let known = folder.known(&step).and_then(|known| serde_json::from_value(known).ok());
+    let row = known.unwrap_or_else(|| {
+        let row = answers.row(point);
+        if let Ok(outcome) = serde_json::to_value(&row) {
+            folder.record(&step, outcome);
+        }
+        row
+    });
+    folder.bar.inc(1);
+    row
+}
+
+/// Writes the rows of a study's part as tables, and of a whole study the page; tells what is best.
+pub fn write(study: &Study, shard: Shard, answers: &Answers, rows: &[Row], path: &Path) -> anyhow::Result<bool> {
+    let columns = Column::all(study);
+    whole::write(&path.join("study.csv"), &table::csv(&columns, rows).context("cannot write the table")?)?;
+    #[cfg(feature = "parquet")]
+    whole::write(&path.join("study.parquet"), &table::parquet(&columns, rows).context("cannot write the table")?)?;
+    output::quiet_when_closed(tell(study, rows))?;
+    output::say!("rows in {}", path.join("study.csv").display());
+    let _ = (shard, answers);
+    Ok(rows.iter().any(|row| row.optimum.is_some()))
+}
+
+/// What is best of each gait and criterion at each speed.
+fn tell(study: &Study, rows: &[Row]) -> std::io::Result<()> {
+    let mut out = output::person();
+    for first in 0..study.of_design() {
+        let point = study.point(first);
+        let same = || rows.iter().filter(|row| row.point % study.of_design() == first);
+        let optimal = same().filter(|row| row.optimum.is_some()).count();
+        write!(out, "{}, least {} at {} m/s: ", point.gait, point.criterion.name(), point.speed)?;
+        write!(out, "{optimal} of {} robots have an optimum", same().count())?;
+        let best = same().filter_map(|row| Some((row, row.cost()?))).min_by(|a, b| a.1.total_cmp(&b.1));
+        let Some((best, cost)) = best else {
+            writeln!(out)?;
+            continue;
+        };
+        let with = study.designs.names().iter().zip(&best.numbers).map(|(name, number)| format!("{name}={number}"));
+        let with: Vec<String> = with.collect();
+        let with = if with.is_empty() { String::new() } else { format!(" with {}", with.join(" ")) };
+        writeln!(out, "; best {} {}{with} (design {})", decimal(cost, 4), point.criterion.unit(), best.design)?;
+    }
+    let starts = study.search.starts.unwrap_or(piaffe_study::FEW);
+    let from = if starts == 1 { "a start that knows".into() } else { format!("{starts} starts that know") };
+    writeln!(out, "Every optimum is local: the best from the base robot's optima and {from} nothing of them.")
+}
+
+fn progress(rows: usize) -> ProgressBar {
+    let style = ProgressStyle::with_template("{msg} {bar:30} {pos}/{len} {elapsed}, about {eta} left");
+    let bar = if output::is_quiet() { ProgressBar::hidden() } else { ProgressBar::new(rows as u64) };
+    bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())).with_message("rows")
+}
