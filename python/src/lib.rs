@@ -1,8 +1,6 @@
 //! What the Python package `piaffe` is made of below: robots, gaits, searches and what is said of results. Numbers cross as bytes
 //! (little batches of doubles), results as their JSON; everything that a person sees is in `python/piaffe`.
 
-#![forbid(unsafe_op_in_unsafe_fn)]
-
 mod bytes;
 mod dynamics;
 mod error;

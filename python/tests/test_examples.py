@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -18,6 +19,17 @@ def test_the_notebook_runs() -> None:
         nbclient.NotebookClient(notebook, timeout=60, resources={"metadata": {"path": str(PYTHON / "tests")}}).execute()
         pages = [output for cell in notebook.cells for output in cell.get("outputs", []) if "text/html" in str(output)]
         assert pages, "no result showed itself"
+
+
+def test_the_document_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    text = (PYTHON.parent / "docs/python.md").read_text(encoding="utf-8")
+    blocks = [block.split("```")[0] for block in text.split("```python\n")[1:]]
+    assert len(blocks) >= 3
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    for block in blocks:
+        exec(block, names)
+    assert {file.name for file in tmp_path.iterdir()} == {"trot.png", "trot.json", "study.csv"}
 
 
 def test_types_hold() -> None:
