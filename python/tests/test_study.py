@@ -20,11 +20,18 @@ import pytest
 
 import piaffe
 
-#: Three designs.
-DESIGNS = [{"links.thigh.mass": 1.4, "limits.friction": 0.9}, {"links.thigh.mass": 1.8}, {"limits.friction": 0.7}]
+#: Six designs.
+DESIGNS = [
+    {"links.thigh.mass": 1.4, "limits.friction": 0.9},
+    {"links.thigh.mass": 1.8},
+    {"limits.friction": 0.7},
+    {"links.thigh.mass": 1.5},
+    {"links.thigh.mass": 1.7, "limits.friction": 0.8},
+    {},
+]
 
-#: Of two gaits that take differently long, with two criteria, at two speeds: 24 points.
-QUESTION: dict[str, Any] = {"gait": ["trot", "amble"], "criterion": ["energy", "torque"], "speed": [0.5, 0.6]}
+#: Of two gaits that take differently long, 12 points.
+QUESTION: dict[str, Any] = {"gait": ["trot", "amble"], "criterion": "torque", "speed": 0.6}
 
 
 def ask(robot: piaffe.Robot, designs: Any = DESIGNS, **options: Any) -> piaffe.Study:
@@ -42,7 +49,7 @@ def processes() -> Executor:
 
 def test_rows_are_what_one_by_one_is_found(quadruped: piaffe.Robot, table: str) -> None:
     rows = ask(quadruped, also=["certificate", "slopes", "stability"]).table()
-    assert [row["point"] for row in rows] == list(range(len(rows))) and len(rows) == 24
+    assert [row["point"] for row in rows] == list(range(len(rows))) and len(rows) == 12
     gaits = {design: [quadruped.set(numbers).gait(gait) for gait in QUESTION["gait"]] for design, numbers in enumerate(DESIGNS)}
     for row in rows[::5]:
         gait = gaits[row["design"]][QUESTION["gait"].index(row["gait"])]
@@ -71,11 +78,11 @@ def test_the_command_line_writes_the_same_table(
 
 
 def test_a_number_that_a_design_does_not_name_stays(quadruped: piaffe.Robot) -> None:
-    rows = piaffe.study(quadruped, DESIGNS, gait="trot", speed=0.5).table()
+    rows = piaffe.study(quadruped, DESIGNS[:3], gait="trot", speed=0.5).table()
     assert rows.column("links.thigh.mass") == [1.4, 1.8, quadruped.numbers["links.thigh.mass"]]
     assert rows.column("limits.friction") == [0.9, quadruped.numbers["limits.friction"], 0.7]
     (alone,) = piaffe.study(quadruped, gait="trot", speed=0.5).table()
-    assert alone["cost"] == pytest.approx(15.2, rel=0.5) and alone["design"] == 0
+    assert alone["cost"] == pytest.approx(piaffe.optimize(quadruped.gait("trot"), 0.5).cost, rel=1e-6)
 
 
 def test_tables_of_all_kinds_are_designs(quadruped: piaffe.Robot) -> None:
