@@ -6,7 +6,28 @@ from collections.abc import Mapping, Sequence
 from os import PathLike
 from typing import final
 
-__all__: list[str]
+__all__ = [
+    "Error",
+    "Gait",
+    "Kernels",
+    "NoOptimum",
+    "Question",
+    "Robot",
+    "SpecificationError",
+    "Stop",
+    "__version__",
+    "answers",
+    "built_in",
+    "csv",
+    "mjcf",
+    "normal",
+    "npz",
+    "optimize",
+    "page",
+    "run",
+    "verify",
+]
+
 __version__: str
 
 class Error(ValueError):
