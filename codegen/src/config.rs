@@ -232,6 +232,14 @@ impl RobotFiles {
         texts.find_map(|file| spec::number(&file.text, name))
     }
 
+    /// All numbers by their names, those of the robot's file first. What several gaits have is that of the first.
+    pub fn numbers(&self) -> Vec<(String, f64)> {
+        let texts = std::iter::once(&self.robot).chain(&self.gaits);
+        let mut known = std::collections::BTreeSet::new();
+        let all = texts.flat_map(|file| spec::numbers(&file.text)).filter(|number| known.insert(number.name.clone()));
+        all.map(|number| (number.name, number.value)).collect()
+    }
+
     fn set_one(&mut self, name: &str, value: f64) -> Result<(), String> {
         if let Some(text) = spec::set(&self.robot.text, name, value) {
             self.robot.text = text;

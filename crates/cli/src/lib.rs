@@ -36,9 +36,12 @@ use piaffe_model::motion::Criterion;
 use piaffe_optimizer::search::local::Task;
 use piaffe_optimizer::search::multi_start::Settings;
 use robots::{Setting, by_name};
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+/// Exit code of a run that could not do what was asked.
+const FAILED: u8 = 1;
 /// Exit code of a run that ended, but without an optimum.
 const NO_OPTIMUM: u8 = 3;
 /// Exit code where not everything that results state was confirmed.
@@ -329,12 +332,12 @@ fn command() -> clap::Command {
 }
 
 /// What was typed. The names that a gait can have depend on the robot that is asked for: that is read first.
-fn read() -> Result<Arguments, ExitCode> {
+fn read(typed: &[OsString]) -> Result<Arguments, u8> {
     let usage = |error: clap::Error| {
         let _ = error.print();
-        ExitCode::from(error.exit_code() as u8)
+        error.exit_code() as u8
     };
-    let chosen = match Arguments::try_parse() {
+    let chosen = match Arguments::try_parse_from(typed) {
         Ok(first) if first.is_of_no_robot() => {
             if first.robot.is_some() || !first.set.is_empty() {
                 let why = "--robot and --set are for commands about a robot's gaits and results";
@@ -348,15 +351,21 @@ fn read() -> Result<Arguments, ExitCode> {
     };
     if let Err(error) = chosen {
         output::error(&error);
-        return Err(ExitCode::FAILURE);
+        return Err(FAILED);
     }
-    Arguments::try_parse().map_err(usage)
+    Arguments::try_parse_from(typed).map_err(usage)
 }
 
 /// Runs the program for the robots of `build`.
 pub fn run(build: Build) -> ExitCode {
+    ExitCode::from(run_with(build, &std::env::args_os().collect::<Vec<_>>()))
+}
+
+/// The same with what was typed, the program's name first; tells the exit code. Once in a process: it is the robots of the first
+/// run that later ones find.
+pub fn run_with(build: Build, typed: &[OsString]) -> u8 {
     built::set(build);
-    let arguments = match read() {
+    let arguments = match read(typed) {
         Ok(arguments) => arguments,
         Err(code) => return code,
     };
@@ -373,11 +382,11 @@ pub fn run(build: Build) -> ExitCode {
         None => Ok(good),
     });
     match outcome {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(unsuccessful),
+        Ok(true) => 0,
+        Ok(false) => unsuccessful,
         Err(error) => {
             output::error(&error);
-            ExitCode::FAILURE
+            FAILED
         }
     }
 }

@@ -3,41 +3,35 @@
 use super::{output, robots, summary};
 use indicatif::{ProgressBar, ProgressStyle};
 use piaffe_model::Gait;
-use piaffe_optimizer::altered::Altered;
 use piaffe_optimizer::cycle::theta;
-use piaffe_optimizer::result::{GaitResult, Status};
-use piaffe_optimizer::search::fastest::nearest_speed;
+use piaffe_optimizer::result::GaitResult;
 use piaffe_optimizer::search::local::Task;
 use piaffe_optimizer::search::multi_start::Settings;
 use piaffe_optimizer::search::relative::related;
+use piaffe_optimizer::search::watch::Event;
+use piaffe_sqp::Control;
 
 pub fn run(task: Task, real_legs: bool, settings: &Settings, json: Option<&str>) -> anyhow::Result<bool> {
-    let Task { mut gait, criterion, speed } = task;
-    let altered = real_legs.then(|| Altered::at_real_legs(gait)).transpose().map_err(anyhow::Error::msg)?;
     let bar = progress(settings.starts);
-    let ended = |_| bar.inc(1);
-    let mut result = task.search(settings, &[], &ended);
-    if let Some(altered) = &altered {
-        // Sought from the optimum without these limits too.
-        gait = altered;
-        let (from, virtual_cost): (Vec<_>, _) = (result.theta().into_iter().collect(), result.cost);
-        bar.set_position(0);
-        result = GaitResult { virtual_cost, ..Task { gait, ..task }.search(settings, &from, &ended) };
-    }
-    if result.status == Status::Infeasible {
-        bar.set_message("nearest speed that works");
-        result.nearest_speed = nearest_speed(gait, criterion, speed, settings);
-    }
-    result.examine(gait);
+    let watch = |event| {
+        match event {
+            Event::Iterate => {}
+            Event::Ended(_) => bar.inc(1),
+            Event::AtRealLegs => bar.set_position(0),
+            Event::NearestSpeed => bar.set_message("nearest speed that works"),
+        }
+        Control::Continue
+    };
+    let result = task.answer(real_legs, settings, &watch).map_err(anyhow::Error::msg)?;
     let described = json != Some("-");
     let mut grounded = None;
-    if described && summary::shortest_flight(gait.description(), &result).is_some() {
+    if described && summary::shortest_flight(task.gait.description(), &result).is_some() {
         bar.set_message("without flight");
         grounded = without_flights(task.gait, &result);
     }
     bar.finish_and_clear();
     if described {
-        output::quiet_when_closed(summary::print(gait.description(), &result, grounded.as_ref()))?;
+        output::quiet_when_closed(summary::print(task.gait.description(), &result, grounded.as_ref()))?;
     }
     if let Some(target) = json {
         output::json_to(target, &result)?;

@@ -138,5 +138,5 @@ pub fn write_report(report: &Report, out: &Path) -> anyhow::Result<PathBuf> {
     for file in report.files() {
         whole::write(&out.join(&file.path), &file.contents)?;
     }
-    Ok(out.join(report.page()))
+    Ok(out.join(report.file_name()))
 }

@@ -7,8 +7,8 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
 /// Arrays by name, over the moments: `t` (n), `half_step`, `stance` (n; 1 or 2), `p`, `pd`, `pdd` (n × 3: the platform's
-/// mass centre), `q`, `qd`, `qdd` (n × coordinates), `torque` (n × joints), `force` (n × 3), `feet` (n × legs × 3); and
-/// the names `coordinates`, `joints` (of the virtual legs), `legs`, `real_joints`, and of each of the last the index of the coordinate
+/// mass centre), `q`, `qd`, `qdd` (n × coordinates), `torque` (n × joints), `force` (n × 3), `feet` (n × legs × 3), for each
+/// real leg `chain_NAME` (n × points × 3: its joints from the platform down, and its foot); and the names `coordinates`, `joints` (of the virtual legs), `legs`, `real_joints`, and of each of the last the index of the coordinate
 /// that it follows (`real_joint_of`). SI units, rad.
 ///
 /// # Errors
@@ -36,6 +36,10 @@ pub fn npz(walk: &Walk) -> std::io::Result<Vec<u8>> {
     put("force", &[3], &|m| m.force.to_vec())?;
     let feet = |m: &Moment| legs(d).flat_map(|(l, k, _)| m.chain(d, l, k).pop().unwrap_or_default()).collect();
     put("feet", &[names.len(), 3], &feet)?;
+    for (leg, member, name) in legs(d) {
+        let points = d.legs[leg].members[member].bodies.len() + 1;
+        put(&format!("chain_{name}"), &[points, 3], &|m| m.chain(d, leg, member).concat())?;
+    }
     let of: Vec<String> = coordinates(d);
     archive.words("coordinates", &of.iter().map(String::as_str).collect::<Vec<_>>())?;
     archive.words("joints", &d.joints.iter().map(|j| j.name).collect::<Vec<_>>())?;

@@ -51,9 +51,21 @@ impl Robot {
     /// # Errors
     /// If there is no such number, or it cannot be this one.
     pub fn with(&self, name: &str, value: f64) -> Result<Robot, Unloadable> {
+        self.with_all([(name, value)])
+    }
+
+    /// The same with several numbers, of which only all together need make a robot.
+    ///
+    /// # Errors
+    /// All names and numbers that are none; or what is wrong with the robot that these make.
+    pub fn with_all<'n>(&self, numbers: impl IntoIterator<Item = (&'n str, f64)>) -> Result<Robot, Unloadable> {
         let mut files = self.files.clone();
-        files.set(name, value).map_err(Unloadable::Specification)?;
-        Robot::new(files)
+        let mut set = |(name, value): (&str, f64)| match value.is_finite() {
+            true => files.set(name, value).err(),
+            false => Some(format!("`{name}` cannot be {value}: give a number")),
+        };
+        let wrong: Vec<String> = numbers.into_iter().filter_map(&mut set).collect();
+        if wrong.is_empty() { Robot::new(files) } else { Err(Unloadable::Specification(wrong.join("\n"))) }
     }
 
     /// The gait that a result carries with it, under its name there.
@@ -68,13 +80,14 @@ impl Robot {
         Robot::new(RobotFiles { module: module.into(), robot, gaits })?.gait(key)
     }
 
+    /// As the specification calls it.
+    pub fn name(&self) -> &str {
+        &self.specified.robot.name
+    }
+
     /// Its files, with the numbers that were changed.
     pub fn files(&self) -> &RobotFiles {
         &self.files
-    }
-
-    pub fn name(&self) -> &str {
-        &self.specified.robot.name
     }
 
     /// Names of its gaits, behind that of its module if it has one.

@@ -1,10 +1,14 @@
 //! A question and its answer, for those who write a program: the optimum of a gait at a speed, with its receipt.
 
-use crate::result::GaitResult;
+use crate::altered::Altered;
+use crate::result::{GaitResult, Status};
+use crate::search::fastest::nearest_speed;
 use crate::search::local::Task;
-use crate::search::multi_start::{Expected, Settings, search_from};
+use crate::search::multi_start::{Expected, Settings, search_watched};
+use crate::search::watch::{Event, Watch, ended};
 use piaffe_model::Gait;
 use piaffe_model::motion::Criterion;
+use piaffe_sqp::Control;
 use std::time::Instant;
 
 /// A question that has no answer.
@@ -54,9 +58,37 @@ impl<'a> Task<'a> {
 
     /// The same from these motions' variables Θ too, at a speed that can be asked for. `done(k)` is told when start `k` has ended.
     pub fn search(&self, settings: &Settings, from: &[Vec<f64>], done: &(dyn Fn(usize) + Sync)) -> GaitResult {
+        self.watched(settings, from, &ended(done))
+    }
+
+    /// The answer as it leaves the program, at a speed that can be asked for: where there is no motion with the nearest speed that
+    /// works, and with all that is told about an optimum. With `real_legs`, limits hold at each real leg too.
+    ///
+    /// # Errors
+    /// If limits cannot be imposed at each real leg, why.
+    pub fn answer(&self, real_legs: bool, settings: &Settings, watch: Watch) -> Result<GaitResult, String> {
+        let altered = real_legs.then(|| Altered::at_real_legs(self.gait)).transpose()?;
+        let mut result = self.watched(settings, &[], watch);
+        let mut task = *self;
+        if let Some(altered) = &altered {
+            task.gait = altered;
+            // Sought from the optimum without these limits too.
+            let (from, virtual_cost): (Vec<_>, _) = (result.theta().into_iter().collect(), result.cost);
+            watch(Event::AtRealLegs);
+            result = GaitResult { virtual_cost, ..task.watched(settings, &from, watch) };
+        }
+        if result.status == Status::Infeasible && watch(Event::NearestSpeed) == Control::Continue {
+            result.nearest_speed = nearest_speed(task.gait, self.criterion, self.speed, settings);
+        }
+        result.examine(task.gait);
+        Ok(result)
+    }
+
+    /// The same as [`Task::search`], for who wants to know more of it or may end it.
+    pub fn watched(&self, settings: &Settings, from: &[Vec<f64>], watch: Watch) -> GaitResult {
         let Task { gait, criterion, speed } = *self;
         let started = Instant::now();
-        let found = search_from(self, settings, from, Expected::Nothing, done);
+        let found = search_watched(self, settings, from, Expected::Nothing, watch);
         GaitResult::new(gait, criterion, speed, &found, settings.seed, || started.elapsed().as_secs_f64())
     }
 }

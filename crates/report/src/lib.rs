@@ -125,14 +125,19 @@ impl<'a> Report<'a> {
         Report { space: Some((space, figures)), ..self }
     }
 
+    /// The page alone.
+    pub fn page(&self) -> String {
+        page::page(self)
+    }
+
     /// Name of the page's file.
-    pub fn page(&self) -> &'static str {
+    pub fn file_name(&self) -> &'static str {
         if self.space.is_some() { "study.html" } else { "index.html" }
     }
 
     /// The page, and every figure as SVG and PDF.
     pub fn files(&self) -> Vec<File> {
-        let mut files = vec![File { path: self.page().into(), contents: page::page(self).into_bytes() }];
+        let mut files = vec![File { path: self.file_name().into(), contents: self.page().into_bytes() }];
         let of_walks = self.subjects.iter().flat_map(|(s, figures)| figures.iter().map(|f| (format!("{}-", s.id), f)));
         let of_atlas = self.atlas.iter().flat_map(|(_, figures)| figures.iter().map(|f| (String::new(), f)));
         let of_space = self.space.iter().flat_map(|(_, figures)| figures.iter().map(|f| (String::new(), f)));

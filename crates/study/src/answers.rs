@@ -56,10 +56,14 @@ impl<'s> Answers<'s> {
 
     /// The answer to a point.
     pub fn row(&self, number: usize) -> Row {
-        let point = self.study.point(number);
-        match self.gait(&point) {
-            Ok(gait) => self.answer(&point, &gait),
-            Err(why) => self.without(&point, Status::NoRobot, brief(&why)),
+        self.answer(&self.study.point(number))
+    }
+
+    /// The answer to a point of a study of which this one is the [outline](Study::outline).
+    pub fn answer(&self, point: &Point) -> Row {
+        match self.gait(point) {
+            Ok(gait) => self.of_gait(point, &gait),
+            Err(why) => self.without(point, Status::NoRobot, brief(&why)),
         }
     }
 
@@ -77,7 +81,7 @@ impl<'s> Answers<'s> {
     }
 
     fn gait(&self, point: &Point) -> Result<Interpreted, Unloadable> {
-        let robot = self.study.designs.robot(&self.study.robot, point.design)?;
+        let robot = self.study.designs.robot_with(&self.study.robot, point.numbers)?;
         member(&self.families, point.gait, &robot)
     }
 
@@ -93,7 +97,7 @@ impl<'s> Answers<'s> {
         if found.optima.is_empty() && search.starts.is_none() { from(None) } else { found }
     }
 
-    fn answer(&self, point: &Point, gait: &dyn Gait) -> Row {
+    fn of_gait(&self, point: &Point, gait: &dyn Gait) -> Row {
         let found = self.found(point, gait);
         let mut failed = None;
         for optimum in &found.optima {
@@ -176,7 +180,7 @@ impl<'s> Answers<'s> {
         Row {
             point: point.number,
             design: point.design,
-            numbers: self.study.designs.numbers(point.design).to_vec(),
+            numbers: point.numbers.to_vec(),
             gait: point.gait.into(),
             criterion: point.criterion,
             speed: point.speed,

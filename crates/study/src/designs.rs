@@ -91,6 +91,12 @@ impl Designs {
         }
     }
 
+    /// Rows that are known to have a finite number for each name.
+    pub(crate) fn of(names: Vec<String>, rows: impl Iterator<Item = Vec<f64>>) -> Designs {
+        let rows: Vec<Vec<f64>> = rows.collect();
+        Designs { names, values: rows.concat(), count: rows.len() }
+    }
+
     pub fn names(&self) -> &[String] {
         &self.names
     }
@@ -109,8 +115,16 @@ impl Designs {
     /// # Errors
     /// If there is no such number, or no such robot.
     pub fn robot(&self, base: &Robot, design: usize) -> Result<Robot, Unloadable> {
+        self.robot_with(base, self.numbers(design))
+    }
+
+    /// The robot with these numbers, in the order of the names.
+    ///
+    /// # Errors
+    /// As for [`Designs::robot`].
+    pub fn robot_with(&self, base: &Robot, numbers: &[f64]) -> Result<Robot, Unloadable> {
         let mut files = placeless(base.files());
-        for (name, value) in self.names.iter().zip(self.numbers(design)) {
+        for (name, value) in self.names.iter().zip(numbers) {
             files.set(name, *value).map_err(Unloadable::Specification)?;
         }
         Robot::new(files)
@@ -129,7 +143,7 @@ impl Designs {
     }
 
     /// Designs that have all that differs: of each number those in which it is least and greatest.
-    pub(crate) fn extremes(&self) -> Vec<usize> {
+    pub fn extremes(&self) -> Vec<usize> {
         let mut designs: Vec<usize> = Vec::new();
         for j in 0..self.names.len() {
             let value = |design: &usize| self.numbers(*design)[j];

@@ -55,6 +55,8 @@ pub struct Point<'s> {
     pub number: usize,
     /// From 0.
     pub design: usize,
+    /// The design's, in the order of the study's names.
+    pub numbers: &'s [f64],
     pub gait: &'s str,
     pub criterion: Criterion,
     /// m/s.
@@ -105,10 +107,19 @@ impl Study {
         Point {
             number,
             design,
+            numbers: self.designs.numbers(design),
             gait: &self.gaits[gait],
             criterion: self.criteria[criterion],
             speed: self.speeds[speed],
         }
+    }
+
+    /// The same question to those designs alone that have all that differs. What answers it answers all points of this one
+    /// ([`Answers::answer`](crate::Answers::answer)), with the same bits, and is soon sent elsewhere.
+    pub fn outline(&self) -> Study {
+        let extremes = self.designs.extremes().into_iter().map(|design| self.designs.numbers(design).to_vec());
+        let designs = Designs::of(self.designs.names().to_vec(), extremes);
+        Study { designs, ..self.clone() }
     }
 
     /// Tells one study from another: a hash of all that its answers depend on.

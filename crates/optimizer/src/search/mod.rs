@@ -13,3 +13,4 @@ pub mod multi_start;
 mod nearest;
 pub mod refine;
 pub mod relative;
+pub mod watch;

@@ -4,10 +4,11 @@ use super::evidence::Effort;
 use super::feasible::motions;
 use super::guess::{Plan, walk};
 use super::local::{Local, Task};
+use super::watch::{Event, Watch, ended};
 use crate::cycle::{Cycle, theta};
 use piaffe_model::Gait;
 use piaffe_model::motion::Criterion;
-use piaffe_sqp::{Control, Iteration, Problem, Values};
+use piaffe_sqp::{Iteration, Problem, Values};
 use rayon::prelude::*;
 
 /// Costs within this share of each other belong to one optimum, if the motions agree too.
@@ -100,9 +101,20 @@ pub fn search_from(
     expected: Expected,
     done: &(dyn Fn(usize) + Sync),
 ) -> Found {
+    search_watched(task, settings, neighbours, expected, &ended(done))
+}
+
+/// The same, for who wants to know more of it or may end it.
+pub fn search_watched(
+    task: &Task,
+    settings: &Settings,
+    neighbours: &[Vec<f64>],
+    expected: Expected,
+    watch: Watch,
+) -> Found {
     let Task { gait, criterion, speed } = *task;
     let scale = Cycle::new(gait, criterion, speed).scale();
-    let follow = |theta: &Vec<f64>| End { local: task.follow(theta, &mut |_| Control::Continue), informed: true };
+    let follow = |theta: &Vec<f64>| End { local: task.follow(theta, &mut |_| watch(Event::Iterate)), informed: true };
     let mut ends: Vec<End> = neighbours.par_iter().map(follow).collect();
     let most = settings.starts.unwrap_or(MOST).max(1);
     let mut first = 0;
@@ -117,8 +129,8 @@ pub fn search_from(
         let confirming = first == 0 && expected != Expected::Nothing;
         let next = most.min(first + if confirming { CONFIRMING } else { BATCH });
         let batch = (first..next).into_par_iter().map(|k| {
-            let end = begin(task, settings.seed, k, best);
-            done(k);
+            let end = begin(task, settings.seed, k, best, watch);
+            watch(Event::Ended(k));
             end
         });
         ends.par_extend(batch);
@@ -129,7 +141,7 @@ pub fn search_from(
         return found;
     }
     // Descents may fail where there are motions: from these they have no limit to find their way to.
-    let known = motions(task, settings.seed, found.effort.starts);
+    let known = motions(task, settings.seed, found.effort.starts, watch);
     let thetas: Vec<Vec<f64>> = known.iter().map(|local| local.theta.clone()).collect();
     ends.par_extend(thetas.par_iter().map(follow));
     let mut found = collect(criterion, &scale, &ends);
@@ -159,8 +171,8 @@ fn is_confirmed(expected: Expected, so_far: &Found, carried: &[End], same: impl 
 }
 
 /// The k-th start of a seed, and where it leads.
-fn begin(task: &Task, seed: u64, k: usize, best: Option<&Optimum>) -> End {
-    let observe = &mut |_: &Iteration| Control::Continue;
+fn begin(task: &Task, seed: u64, k: usize, best: Option<&Optimum>, watch: Watch) -> End {
+    let observe = &mut |_: &Iteration| watch(Event::Iterate);
     if let (Some(best), 0) = (best, k % HOP) {
         return End { local: task.descend(&hop(task, seed, k, &best.local.theta), observe), informed: true };
     }

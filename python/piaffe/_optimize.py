@@ -1,0 +1,39 @@
+"""A question and its answer."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Literal
+
+from . import _piaffe
+from ._piaffe import Gait
+from ._result import Result
+
+Criterion = Literal["energy", "torque"]
+
+
+def optimize(
+    gait: Gait,
+    speed: float,
+    criterion: Criterion = "energy",
+    *,
+    set: Mapping[str, float] | None = None,
+    real_legs: bool = False,
+    starts: int | None = None,
+    seed: int = 1,
+    threads: int | None = None,
+) -> Result:
+    """The cheapest periodic motion of a gait at a mean forward speed (m/s), as far as local searches can tell.
+
+    `criterion` is what is least per metre: the work of the actuators ("energy", N) or the squares of their torques ("torque",
+    N²·m·s). `set` puts other numbers in the place of the specification's, as `Robot.set` does. With `real_legs` the limits hold at
+    each real leg too. `starts` is their number, a default walk and random ones of `seed`; if it is not given, as many as the optima
+    found let expect others. The answer is the same for any number of `threads`, by default all cores.
+
+    Whether there is an optimum, and why not, is in the result: `status`, `message`. Ctrl-C ends the search.
+
+    Raises `Error` where the question is none: a speed that is no positive number, a number that the specification has not.
+    """
+    if set:
+        gait = gait.set(set)
+    return Result(_piaffe.optimize(gait, speed, criterion, real_legs, starts, seed, threads))

@@ -1,0 +1,56 @@
+//! A question and its answer.
+
+use crate::error::Error;
+use crate::result::text;
+use crate::robot::Gait;
+use crate::work::{Stop, work};
+use piaffe::Task;
+use piaffe::motion::Criterion;
+use piaffe::search::multi_start::Settings;
+use piaffe::sqp::Control;
+use pyo3::prelude::*;
+
+/// The criterion of this name.
+pub fn criterion(name: &str) -> PyResult<Criterion> {
+    let known = || Criterion::ALL.map(|criterion| format!("\"{}\"", criterion.name())).join(" or ");
+    let found = Criterion::ALL.into_iter().find(|criterion| criterion.name() == name);
+    found.ok_or_else(|| Error::new_err(format!("`criterion` is \"{name}\": give {}", known())))
+}
+
+/// A speed that can be asked for, m/s.
+pub fn speed(speed: f64) -> PyResult<f64> {
+    let good = speed.is_finite() && speed > 0.0;
+    good.then_some(speed)
+        .ok_or_else(|| Error::new_err(format!("`speed` is {speed}: give a positive number of m/s, such as 0.6")))
+}
+
+/// Starts of a search.
+pub fn settings(starts: Option<usize>, seed: u64) -> PyResult<Settings> {
+    match starts {
+        Some(0) => Err(Error::new_err("`starts` is 0: give at least 1, or None for as many as the evidence asks for")),
+        starts => Ok(Settings { starts, seed }),
+    }
+}
+
+/// The result as JSON.
+#[pyfunction]
+#[pyo3(signature = (gait, speed, criterion, real_legs, starts, seed, threads))]
+#[allow(clippy::too_many_arguments)]
+pub fn optimize(
+    py: Python<'_>,
+    gait: &Gait,
+    speed: f64,
+    criterion: &str,
+    real_legs: bool,
+    starts: Option<usize>,
+    seed: u64,
+    threads: Option<usize>,
+) -> PyResult<String> {
+    let (criterion, speed) = (self::criterion(criterion)?, self::speed(speed)?);
+    let (gait, settings) = (gait.derived(), settings(starts, seed)?);
+    let answer = work(py, threads, Stop::default(), move |stop| {
+        let watch = |_| if stop.is_wanted() { Control::Stop } else { Control::Continue };
+        Task { gait: &*gait, criterion, speed }.answer(real_legs, &settings, &watch)
+    })?;
+    text(&answer.map_err(|why| Error::new_err(format!("`real_legs`: {why}")))?)
+}

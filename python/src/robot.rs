@@ -1,0 +1,299 @@
+//! Robots and their gaits.
+
+use crate::error::{Error, SpecificationError};
+use crate::work::apart;
+use piaffe::import::{Direction, FootPoint, Lock, Options, Setting, Stops, import};
+use piaffe::interpreter::{Interpreted, Unloadable};
+use piaffe::model::Gait as _;
+use piaffe_codegen::{RobotFiles, SpecFile};
+use pyo3::exceptions::PyOSError;
+use pyo3::prelude::*;
+use pyo3::types::PyMapping;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Entries of a dictionary, in its order.
+fn entries<'py, T: FromPyObjectOwned<'py>>(given: &Bound<'py, PyMapping>) -> PyResult<Vec<(String, T)>> {
+    given.items()?.iter().map(|item| item.extract()).collect()
+}
+
+/// Names alone, or with what belongs to them.
+fn named<'py, T: FromPyObjectOwned<'py>>(given: Option<&Bound<'py, PyAny>>) -> PyResult<Vec<(String, Option<T>)>> {
+    match given.map(|given| (given, given.cast::<PyMapping>())) {
+        None => Ok(Vec::new()),
+        Some((_, Ok(mapping))) => entries(mapping),
+        Some((names, Err(_))) => Ok(names.extract::<Vec<String>>()?.into_iter().map(|name| (name, None)).collect()),
+    }
+}
+
+/// A number for all joints that have none, or those of some.
+fn settings(option: &str, given: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<Setting>> {
+    let setting = |joint, value: f64| match value.is_finite() && value >= 0.0 {
+        true => Ok(Setting { joint, value }),
+        false => Err(Error::new_err(format!("`{option}` is {value}: give a number that is not negative"))),
+    };
+    match given.map(|given| (given, given.cast::<PyMapping>())) {
+        None => Ok(Vec::new()),
+        Some((_, Ok(each))) => entries(each)?.into_iter().map(|(joint, value)| setting(Some(joint), value)).collect(),
+        Some((all, Err(_))) => Ok(vec![setting(None, all.extract()?)?]),
+    }
+}
+
+fn direction(option: &str, axis: Option<String>) -> PyResult<Option<Direction>> {
+    let read = |axis: String| axis.parse().map_err(|why| Error::new_err(format!("`{option}` is \"{axis}\": it {why}")));
+    axis.map(read).transpose()
+}
+
+pub fn unloadable(why: Unloadable) -> PyErr {
+    match why {
+        Unloadable::NoGait { .. } => Error::new_err(why.to_string()),
+        Unloadable::Specification(_) | Unloadable::Gait { .. } => SpecificationError::new_err(why.to_string()),
+    }
+}
+
+/// A robot as its files describe it: `Robot(robot, gaits)` with the text of `robot.toml` and those of the gaits by name.
+///
+/// Robots do not change; they are equal if their files are, and travel to other processes.
+#[pyclass(frozen, module = "piaffe")]
+#[derive(Clone)]
+pub struct Robot {
+    robot: piaffe::Robot,
+    notes: Vec<String>,
+}
+
+impl Robot {
+    pub fn of(files: RobotFiles, notes: Vec<String>) -> PyResult<Robot> {
+        let files = RobotFiles { module: String::new(), ..files };
+        Ok(Robot { robot: piaffe::Robot::new(files).map_err(unloadable)?, notes })
+    }
+
+    pub fn robot(&self) -> &piaffe::Robot {
+        &self.robot
+    }
+
+    fn texts(&self) -> (&str, BTreeMap<String, &str>) {
+        let files = self.robot.files();
+        let gaits = self.robot.gaits().into_iter().zip(files.gaits.iter().map(|file| &*file.text));
+        (&files.robot.text, gaits.collect())
+    }
+}
+
+#[pymethods]
+impl Robot {
+    #[new]
+    #[pyo3(signature = (robot, gaits, notes = Vec::new()))]
+    fn new(robot: String, gaits: BTreeMap<String, String>, notes: Vec<String>) -> PyResult<Robot> {
+        let gaits = gaits.into_iter().map(|(name, text)| SpecFile { path: format!("{name}.toml"), text }).collect();
+        let robot = SpecFile { path: "robot.toml".into(), text: robot };
+        Robot::of(RobotFiles { module: String::new(), robot, gaits }, notes)
+    }
+
+    /// The robot of a folder with `robot.toml` and `gaits/*.toml`.
+    #[staticmethod]
+    fn from_toml(folder: PathBuf) -> PyResult<Robot> {
+        let files = RobotFiles::read(&folder).map_err(|why| match folder.is_dir() {
+            true => SpecificationError::new_err(why),
+            false => PyOSError::new_err(why),
+        })?;
+        Robot::of(files, Vec::new())
+    }
+
+    /// The robot of a URDF or MJCF. What the file does not say is given, or assumed and told in `notes`.
+    ///
+    /// `lock` names joints that are held still (arms, heads), or gives each an angle of the file, rad; `*` and `?` match several,
+    /// a `/` at the end all joints below too. `foot` names links that touch the ground, or gives each the point of it that does,
+    /// m. `effort` (N·m), `velocity` (rad/s), `gear` (motor turns per turn of the joint) and `rotor` (kg·m² at the motor) are
+    /// numbers for all joints that have none, or by joint. `range` has stops by joint, rad. `forward` and `up` are axes of the root
+    /// link, such as "-y". Legs that differ by no more than the share `alike` are made alike. `mend` takes the nearest possible
+    /// inertia where no body has the one of the file.
+    #[staticmethod]
+    #[pyo3(signature = (
+        path, *, lock = None, foot = None, effort = None, velocity = None, gear = None, rotor = None, range = None, forward = None,
+        up = None, alike = 1e-3, mend = false
+    ))]
+    #[allow(clippy::too_many_arguments)]
+    fn from_urdf(
+        path: PathBuf,
+        lock: Option<&Bound<'_, PyAny>>,
+        foot: Option<&Bound<'_, PyAny>>,
+        effort: Option<&Bound<'_, PyAny>>,
+        velocity: Option<&Bound<'_, PyAny>>,
+        gear: Option<&Bound<'_, PyAny>>,
+        rotor: Option<&Bound<'_, PyAny>>,
+        range: Option<&Bound<'_, PyMapping>>,
+        forward: Option<String>,
+        up: Option<String>,
+        alike: f64,
+        mend: bool,
+    ) -> PyResult<Robot> {
+        if !(0.0..=0.5).contains(&alike) {
+            return Err(Error::new_err(format!("`alike` is {alike}, and must be between 0 and 0.5")));
+        }
+        let ranges: Vec<(String, [f64; 2])> = range.map(entries).transpose()?.unwrap_or_default();
+        if let Some((joint, [low, high])) =
+            ranges.iter().find(|(_, [low, high])| low.is_nan() || high.is_nan() || low >= high)
+        {
+            return Err(Error::new_err(format!(
+                "`range` of {joint} is [{low}, {high}]: give the lower stop first, rad"
+            )));
+        }
+        let options = Options {
+            locks: named(lock)?.into_iter().map(|(pattern, angle)| Lock { pattern, angle }).collect(),
+            feet: named::<[f64; 3]>(foot)?
+                .into_iter()
+                .map(|(link, at)| FootPoint { link, point: at.map(From::from) })
+                .collect(),
+            efforts: settings("effort", effort)?,
+            velocities: settings("velocity", velocity)?,
+            gears: settings("gear", gear)?,
+            rotors: settings("rotor", rotor)?,
+            ranges: ranges.into_iter().map(|(joint, range)| Stops { joint, range }).collect(),
+            forward: direction("forward", forward)?,
+            up: direction("up", up)?,
+            alike,
+            mend,
+        };
+        let name = path.display();
+        let text =
+            std::fs::read_to_string(&path).map_err(|why| PyOSError::new_err(format!("cannot read {name}: {why}")))?;
+        let made = import(&text, &options)
+            .map_err(|faults| SpecificationError::new_err(format!("cannot import {name}: {faults}")))?;
+        let gaits = made.gaits.into_iter().map(|(path, text)| SpecFile { path, text }).collect();
+        let robot = SpecFile { path: "robot.toml".into(), text: made.robot };
+        Robot::of(RobotFiles { module: String::new(), robot, gaits }, made.notes)
+    }
+
+    /// As the specification calls it.
+    #[getter]
+    fn name(&self) -> String {
+        self.robot.name().into()
+    }
+
+    /// Names of its gaits.
+    #[getter]
+    fn gaits(&self) -> Vec<String> {
+        self.robot.gaits()
+    }
+
+    /// What an import took, assumed and dropped, a sentence each.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.notes.clone()
+    }
+
+    /// The specification: paths in the robot's folder, and their texts.
+    #[getter]
+    fn files(&self) -> BTreeMap<String, &str> {
+        let (robot, gaits) = self.texts();
+        let gaits = gaits.into_iter().map(|(name, text)| (format!("gaits/{name}.toml"), text));
+        gaits.chain([("robot.toml".into(), robot)]).collect()
+    }
+
+    /// All numbers of the specification, by the names with which `set` changes them.
+    #[getter]
+    fn numbers(&self) -> BTreeMap<String, f64> {
+        self.robot.files().numbers().into_iter().collect()
+    }
+
+    /// What is wrong with these names, if they are to be those of numbers.
+    fn unknown(&self, names: Vec<String>) -> Vec<String> {
+        let mut files = self.robot.files().clone();
+        // Any number will do: none is used.
+        names.iter().filter_map(|name| files.set(name, 1.0).err()).collect()
+    }
+
+    /// Derives a gait: 20 to 80 ms for those that are shipped.
+    fn gait(&self, py: Python<'_>, name: &str) -> PyResult<Gait> {
+        Gait::new(py, self, name)
+    }
+
+    /// The same robot with other numbers, by the keys that lead to them: `{"links.thigh.mass": 1.2, "limits.friction": 0.8}`.
+    fn set(&self, numbers: BTreeMap<String, f64>) -> PyResult<Robot> {
+        let numbers = numbers.iter().map(|(name, value)| (name.as_str(), *value));
+        Ok(Robot { robot: self.robot.with_all(numbers).map_err(unloadable)?, notes: self.notes.clone() })
+    }
+
+    fn __getnewargs__(&self) -> (&str, BTreeMap<String, &str>, Vec<String>) {
+        let (robot, gaits) = self.texts();
+        (robot, gaits, self.notes.clone())
+    }
+
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
+        other.cast::<Robot>().is_ok_and(|other| self.texts() == other.get().texts())
+    }
+
+    fn __hash__(&self) -> u64 {
+        piaffe::model::hash(&format!("{:?}", self.texts()))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<piaffe.Robot {}: {}>", self.name(), self.gaits().join(", "))
+    }
+}
+
+/// A gait of a robot, with its dynamics derived.
+///
+/// It does not change, and is derived anew where it arrives in another process.
+#[pyclass(frozen, module = "piaffe")]
+#[derive(Clone)]
+pub struct Gait {
+    robot: Robot,
+    name: String,
+    derived: Arc<Interpreted>,
+}
+
+impl Gait {
+    pub fn derived(&self) -> Arc<Interpreted> {
+        self.derived.clone()
+    }
+}
+
+#[pymethods]
+impl Gait {
+    #[new]
+    fn new(py: Python<'_>, robot: &Robot, name: &str) -> PyResult<Gait> {
+        let derived = apart(py, || robot.robot.gait(name))?.map_err(unloadable)?;
+        Ok(Gait { robot: robot.clone(), name: name.into(), derived: Arc::new(derived) })
+    }
+
+    /// As its robot calls it.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    #[getter]
+    fn robot(&self) -> Robot {
+        self.robot.clone()
+    }
+
+    /// The same gait of the robot with other numbers: `Robot.set`.
+    fn set(&self, py: Python<'_>, numbers: BTreeMap<String, f64>) -> PyResult<Gait> {
+        self.robot.set(numbers)?.gait(py, &self.name)
+    }
+
+    /// The numbers on which it depends, with their units. Those that must stay alike have one name, what differs in braces.
+    #[getter]
+    fn parameters(&self, py: Python<'_>) -> PyResult<BTreeMap<&'static str, (f64, &'static str)>> {
+        let levers = apart(py, || self.derived.levers())?;
+        Ok(levers.iter().map(|lever| (lever.name, (lever.value, lever.unit))).collect())
+    }
+
+    fn __getnewargs__(&self) -> (Robot, &str) {
+        (self.robot.clone(), &self.name)
+    }
+
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
+        let texts = |gait: &Gait| gait.robot.robot.specification(&gait.name);
+        other.cast::<Gait>().is_ok_and(|other| self.name == other.get().name && texts(self) == texts(other.get()))
+    }
+
+    fn __hash__(&self) -> u64 {
+        piaffe::model::hash(&self.derived.description().fingerprint())
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<piaffe.Gait {} of {}>", self.name, self.derived.description().robot)
+    }
+}
