@@ -298,8 +298,10 @@ mod tests {
     /// Against the definition, pair by pair.
     #[test]
     fn a_front_has_what_nothing_beats() {
-        let mut random = (1..).map(|k| ((k * 7919) % 104_729) as f64 / 104_729.0);
-        let spots: Vec<Spot> = (0..200).map(|k| spot(k, [random.next().unwrap(), random.next().unwrap()])).collect();
+        // All over a band that falls.
+        let share = |k: usize, step: f64| ((k + 1) as f64 * step).fract();
+        let place = |k: usize| [0.01 + share(k, 0.618), 0.01 + (1.0 - share(k, 0.618)).powi(2) + 0.3 * share(k, 1.414)];
+        let spots: Vec<Spot> = (0..200).map(|k| spot(k, place(k))).collect();
         let all: Vec<&Spot> = spots.iter().collect();
         let found: Vec<usize> = front(&all, both).into_iter().map(|(spot, _)| spot.point).collect();
         let beats = |a: &Spot, b: &Spot| {
