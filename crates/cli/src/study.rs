@@ -207,6 +207,9 @@ fn tell(study: &Study, rows: &[Row]) -> std::io::Result<()> {
         let with = if with.is_empty() { String::new() } else { format!(" with {}", with.join(" ")) };
         writeln!(out, "; best {} {}{with} (design {})", decimal(cost, 4), point.criterion.unit(), best.design)?;
     }
+    if rows.iter().all(|row| row.optimum.is_none()) {
+        return Ok(());
+    }
     let starts = study.search.starts.unwrap_or(piaffe_study::FEW);
     let from = if starts == 1 { "a start that knows".into() } else { format!("{starts} starts that know") };
     writeln!(out, "Every optimum is local: the best from the base robot's optima and {from} nothing of them.")

@@ -48,11 +48,24 @@ impl Spot {
     }
 }
 
-/// An axis across which lines go: how far each spot is on it.
-struct Across<'a> {
-    name: String,
-    unit: &'static str,
-    value: Box<dyn Fn(&Spot) -> Option<f64> + 'a>,
+/// An axis across which lines go.
+#[derive(Clone, Copy, PartialEq)]
+enum Across {
+    /// Which of the varied ones.
+    Number(usize),
+    Speed,
+    Cost,
+}
+
+impl Across {
+    /// Where a spot is on it.
+    fn value(self, spot: &Spot) -> Option<f64> {
+        match self {
+            Across::Number(k) => spot.numbers.get(k).copied(),
+            Across::Speed => Some(spot.speed),
+            Across::Cost => spot.cost(),
+        }
+    }
 }
 
 impl Space {
@@ -141,19 +154,14 @@ impl Space {
     /// Parallel coordinates: a line for each robot across the varied numbers, the speed and the cost.
     fn parallel(&self, group: &[&Spot]) -> Option<Figure> {
         let first = group.first()?;
-        let mut axes: Vec<Across> = Vec::new();
-        for (k, name) in self.numbers.iter().enumerate() {
-            let value = move |spot: &Spot| spot.numbers.get(k).copied();
-            axes.push(Across { name: name.clone(), unit: "", value: Box::new(value) });
-        }
-        axes.push(Across { name: "speed".into(), unit: "m/s", value: Box::new(|spot| Some(spot.speed)) });
+        let mut axes: Vec<Across> = (0..self.numbers.len()).map(Across::Number).chain([Across::Speed]).collect();
         // What is the same for all says nothing.
         axes.retain(|axis| {
-            let mut values = group.iter().filter_map(|spot| (axis.value)(spot));
+            let mut values = group.iter().filter_map(|spot| axis.value(spot));
             let first = values.next();
             values.any(|value| Some(value) != first)
         });
-        axes.push(Across { name: "cost".into(), unit: first.criterion.unit(), value: Box::new(Spot::cost) });
+        axes.push(Across::Cost);
         let mut optimal: Vec<&Spot> = group.iter().copied().filter(|spot| spot.costs.is_some()).collect();
         if axes.len() < 2 || optimal.len() < 2 {
             return None;
@@ -164,7 +172,7 @@ impl Space {
         let every = optimal.len().div_ceil(LINES);
         let (left, right, top, bottom) = (64.0, 736.0, 52.0, 262.0);
         let scale = |axis: &Across| {
-            let domain = domain(optimal.iter().filter_map(|spot| (axis.value)(spot)));
+            let domain = domain(optimal.iter().filter_map(|spot| axis.value(spot)));
             Scale { domain, range: [bottom, top] }
         };
         let scales: Vec<Scale> = axes.iter().map(scale).collect();
@@ -174,7 +182,7 @@ impl Space {
         scene.write([4.0, 15.0], &title, 13.0, Weight::Bold, Anchor::Start, Ink::Text);
         // The best last, on top.
         for (k, spot) in optimal.iter().enumerate().rev().filter(|(k, _)| *k < best || k % every == 0) {
-            let place = |(j, axis): (usize, &Across)| Some([x(j), scales[j].at((axis.value)(spot)?)]);
+            let place = |(j, axis): (usize, &Across)| Some([x(j), scales[j].at(axis.value(spot)?)]);
             let points: Option<Vec<Xy>> = axes.iter().enumerate().map(place).collect();
             let pen = if k < best { Pen::new(Ink::gait(0), 1.4) } else { Pen::new(Ink::Muted, 0.7).opacity(0.25) };
             scene.line(&points?, pen);
@@ -189,7 +197,12 @@ impl Space {
             }
             // Names stand in turn in two rows, so that long ones have room.
             let row = if k % 2 == 0 { 42.0 } else { 30.0 };
-            scene.quantity([x(k), row], [&axis.name, axis.unit], ticks.power, 10.0, Anchor::Middle, Ink::Text);
+            let words = match axis {
+                Across::Number(k) => [self.numbers[*k].as_str(), ""],
+                Across::Speed => ["speed", "m/s"],
+                Across::Cost => ["cost", first.criterion.unit()],
+            };
+            scene.quantity([x(k), row], words, ticks.power, 10.0, Anchor::Middle, Ink::Text);
         }
         let name = format!("parallel-{}-{}", first.gait.replace('/', "-"), first.criterion.name());
         let some = if every > 1 { format!(" Every {every}th of the others is drawn.") } else { String::new() };
@@ -285,8 +298,10 @@ mod tests {
     /// Against the definition, pair by pair.
     #[test]
     fn a_front_has_what_nothing_beats() {
-        let mut random = (1..).map(|k| ((k * 7919) % 104_729) as f64 / 104_729.0);
-        let spots: Vec<Spot> = (0..200).map(|k| spot(k, [random.next().unwrap(), random.next().unwrap()])).collect();
+        // All over a band that falls.
+        let share = |k: usize, step: f64| ((k + 1) as f64 * step).fract();
+        let place = |k: usize| [0.01 + share(k, 0.618), 0.01 + (1.0 - share(k, 0.618)).powi(2) + 0.3 * share(k, 1.414)];
+        let spots: Vec<Spot> = (0..200).map(|k| spot(k, place(k))).collect();
         let all: Vec<&Spot> = spots.iter().collect();
         let found: Vec<usize> = front(&all, both).into_iter().map(|(spot, _)| spot.point).collect();
         let beats = |a: &Spot, b: &Spot| {
