@@ -49,6 +49,28 @@ fn runs_are_found_from_a_seed_alone_and_proven() {
     }
 }
 
+/// An optimum of an independent solver.
+#[derive(serde::Deserialize)]
+struct Known {
+    gait: String,
+    criterion: Criterion,
+    speed: f64,
+    value: f64,
+}
+
+/// At every speed at which an independent solver knows an optimum, with as many starts as the search asks for.
+#[test]
+#[ignore = "minutes"]
+fn all_known_runs_are_found() {
+    let known: Vec<Known> = serde_json::from_str(include_str!("fixtures/best_known_running.json")).unwrap();
+    for Known { gait, criterion, speed, value } in known {
+        let result = Task { gait: named(&gait), criterion, speed }.search(&Settings::default(), &[], &|_| {});
+        let cost = result.cost.unwrap_or_else(|| panic!("{gait} {criterion:?} at {speed} m/s: {}", result.message));
+        println!("{gait} {criterion:?} at {speed} m/s: {cost:.4}, known {value:.4}");
+        assert!(cost <= 1.002 * value, "{gait} {criterion:?} at {speed} m/s: {cost}, known is {value}");
+    }
+}
+
 /// All real feet are in the air but where a phase begins or ends.
 fn in_flight_no_foot_touches(gait: &dyn Gait, motion: &Motion) {
     let walk = Walk::even(gait, motion, 40).unwrap();

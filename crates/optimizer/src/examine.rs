@@ -21,9 +21,15 @@ impl GaitResult {
         if self.certificate.is_none() {
             open.push(NotExamined { entry: "certificate".into(), reason: "nothing could be enclosed".into() });
         }
-        self.stability = told(stability(gait, &motion), "stability", &mut open);
-        self.real_legs = told(RealLegs::new(gait, &motion), "real_legs", &mut open);
-        let slopes = sensitivities(gait, self.criterion, self.speed, &motion);
+        let (legs, (slopes, pushed)) = rayon::join(
+            || RealLegs::new(gait, &motion),
+            || {
+                let slopes = || sensitivities(gait, self.criterion, self.speed, &motion);
+                rayon::join(slopes, || stability(gait, &motion))
+            },
+        );
+        self.stability = told(pushed, "stability", &mut open);
+        self.real_legs = told(legs, "real_legs", &mut open);
         self.sensitivities = told(slopes, "sensitivities", &mut open);
         self.not_examined = open;
     }
