@@ -59,7 +59,7 @@ fn slopes_are_those_of_optima_of_other_robots() {
                 continue;
             }
             // Numbers that are zero are inertias, kg·m²; those of rotors count a thousandfold.
-            let (size, h) = if *value == 0.0 { (1e-4, 1e-8) } else { (value.abs(), 1e-4 * value.abs()) };
+            let (size, h) = if *value == 0.0 { (1e-4, 1e-9) } else { (value.abs(), 1e-4 * value.abs()) };
             let differences = differences(&names, *value, h);
             let (exact, differences) = (slope * size / best, differences * size / best);
             // Slopes are those of the continuous problem, differences those of the optimizer's mesh. Where a gait flies, a first rotor on
