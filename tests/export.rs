@@ -4,8 +4,9 @@
 mod program;
 #[path = "export/python.rs"]
 mod python;
+#[path = "gaits/walking.rs"]
+mod walking;
 
-use piaffe::gaits::GAITS;
 use piaffe::model::{Description, Rotation};
 use piaffe::motion::Criterion;
 use piaffe::result::GaitResult;
@@ -13,6 +14,7 @@ use piaffe::walk::{Moment, Walk};
 use program::{optimum, piaffe};
 use python::{ask, python};
 use serde_json::{Value, json};
+use walking::walking;
 
 fn export(result: &GaitResult, arguments: &[&str]) -> Vec<u8> {
     piaffe(result, &[&["export", "-"], arguments].concat())
@@ -20,7 +22,7 @@ fn export(result: &GaitResult, arguments: &[&str]) -> Vec<u8> {
 
 #[test]
 fn a_table_has_the_numbers_of_the_walk() {
-    for gait in GAITS.iter().filter(|g| !g.description().flies()) {
+    for gait in walking() {
         let (result, motion) = optimum(*gait, Criterion::Torque);
         let text = String::from_utf8(export(&result, &["--format", "csv", "--rate", "200"])).unwrap();
         let mut lines = text.lines();
@@ -45,7 +47,7 @@ fn a_table_has_the_numbers_of_the_walk() {
 
 #[test]
 fn a_controller_that_follows_the_polynomials_does_the_walk() {
-    for gait in GAITS.iter().filter(|g| !g.description().flies()) {
+    for gait in walking() {
         let (result, motion) = optimum(*gait, Criterion::Torque);
         let program: Value = serde_json::from_slice(&export(&result, &["--format", "json"])).unwrap();
         let walk = Walk::even(*gait, &motion, 20).unwrap();
@@ -137,7 +139,7 @@ fn numbers(value: &Value) -> Vec<f64> {
 fn mujoco_agrees_about_masses_feet_and_inverse_dynamics_of_the_real_robot() {
     let Some(python) = python() else { return };
     let folder = tempfile::tempdir().unwrap();
-    for gait in GAITS.iter().filter(|g| !g.description().flies()) {
+    for gait in walking() {
         let d = gait.description();
         let (result, motion) = optimum(*gait, Criterion::Torque);
         let files = ["mjcf", "npz", "urdf"].map(|format| {

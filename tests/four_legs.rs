@@ -4,6 +4,8 @@
 mod program;
 #[path = "export/python.rs"]
 mod python;
+#[path = "gaits/walking.rs"]
+mod walking;
 
 use piaffe::altered::Altered;
 use piaffe::cycle::{Cycle, theta};
@@ -16,14 +18,10 @@ use piaffe::walk::{Moment, Walk};
 use program::{optimum, optimum_at, piaffe};
 use python::{ask, python};
 use serde_json::{Value, json};
+use walking::walking;
 
 fn gait(key: &str) -> &'static dyn Gait {
     *GAITS.iter().find(|g| g.description().key == key).unwrap()
-}
-
-/// Gaits that never leave the ground.
-fn walking() -> impl Iterator<Item = &'static &'static dyn Gait> {
-    GAITS.iter().filter(|g| !g.description().flies())
 }
 
 /// Every moment of a gait's optimum with what is made of it.

@@ -1,5 +1,8 @@
 //! The whole way: from geometry to an optimum with a receipt, for every gait and criterion.
 
+#[path = "gaits/walking.rs"]
+mod walking;
+
 use piaffe::altered::Altered;
 use piaffe::gaits::GAITS;
 use piaffe::model::Gait;
@@ -8,16 +11,12 @@ use piaffe::result::{GaitResult, Status};
 use piaffe::search::multi_start::{Settings, search};
 use piaffe::verdict::VIOLATION;
 use piaffe::verify::{sample, verify};
+use walking::walking;
 
 fn optimize(gait: &dyn Gait, criterion: Criterion, speed: f64, starts: usize) -> GaitResult {
     let settings = Settings { starts: Some(starts), seed: 1 };
     let found = search(gait, criterion, speed, &settings, &|_| {});
     GaitResult::new(gait, criterion, speed, &found, settings.seed, || 0.0)
-}
-
-/// Gaits that never leave the ground.
-fn walking() -> impl Iterator<Item = &'static &'static dyn Gait> {
-    GAITS.iter().filter(|g| !g.description().flies())
 }
 
 fn named(name: &str) -> &'static dyn Gait {

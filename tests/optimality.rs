@@ -1,5 +1,8 @@
 //! Optimality re-derived from the motion alone.
 
+#[path = "gaits/walking.rs"]
+mod walking;
+
 use piaffe::altered::Altered;
 use piaffe::cycle::Cycle;
 use piaffe::gaits::GAITS;
@@ -11,11 +14,7 @@ use piaffe::search::local::{Local, Task};
 use piaffe::search::multi_start::{Settings, search};
 use piaffe::sqp::Control;
 use piaffe::walk::Walk;
-
-/// Gaits that never leave the ground.
-fn walking() -> impl Iterator<Item = &'static &'static dyn Gait> {
-    GAITS.iter().filter(|g| !g.description().flies())
-}
+use walking::walking;
 
 fn optimum(gait: &dyn Gait, criterion: Criterion, speed: f64) -> Local {
     search(gait, criterion, speed, &Settings::default(), &|_| {}).optima[0].local.clone()

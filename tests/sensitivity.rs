@@ -1,24 +1,22 @@
 //! Slopes of the optimum in limits and speed against optima of changed problems. Those in masses and lengths need robots
 //! with other dynamics: see family/tests.
 
+#[path = "gaits/walking.rs"]
+mod walking;
+
 use piaffe::altered::Altered;
-use piaffe::gaits::GAITS;
 use piaffe::model::{Gait, Lever};
 use piaffe::motion::Criterion;
 use piaffe::search::local::{Local, Task};
 use piaffe::search::multi_start::{Settings, search};
 use piaffe::sensitivity::{Sensitivities, sensitivities};
 use piaffe::sqp::Control;
+use walking::walking;
 
 #[path = "flight/gaits.rs"]
 mod flying;
 
 const SPEED: f64 = 0.6;
-
-/// Gaits that never leave the ground.
-fn walking() -> impl Iterator<Item = &'static &'static dyn Gait> {
-    GAITS.iter().filter(|g| !g.description().flies())
-}
 
 fn optimum(gait: &dyn Gait, criterion: Criterion) -> Local {
     search(gait, criterion, SPEED, &Settings::default(), &|_| {}).optima[0].local.clone()

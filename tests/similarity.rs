@@ -3,6 +3,8 @@
 
 #[path = "similarity/copy.rs"]
 mod copy;
+#[path = "gaits/walking.rs"]
+mod walking;
 
 use copy::{Copy, Factors};
 use piaffe::cycle::{Cycle, theta};
@@ -14,6 +16,7 @@ use piaffe::search::guess::{Plan, walk};
 use piaffe::search::multi_start::{Settings, search};
 use piaffe::sqp::{Problem, Values};
 use piaffe::units::Units;
+use walking::walking;
 
 /// Far below and above all robots.
 const SIZES: [(f64, f64); 4] = [(1e-3, 1e-6), (1e2, 1e6), (1e-3, 1e3), (30.0, 1e-4)];
@@ -175,7 +178,7 @@ fn copies_of_any_size_and_weight_have_the_same_optima() {
 #[test]
 #[ignore = "minutes"]
 fn copies_of_all_gaits_have_the_same_optima() {
-    for gait in GAITS.iter().filter(|g| !g.description().flies()) {
+    for gait in walking() {
         for criterion in Criterion::ALL {
             has_the_same_bits(*gait, criterion, (2f64.powi(-10), 2f64.powi(20)));
             has_the_same_cost(*gait, criterion, &SIZES);

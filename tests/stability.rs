@@ -2,6 +2,8 @@
 
 #[path = "flight/gaits.rs"]
 mod flight;
+#[path = "gaits/walking.rs"]
+mod walking;
 
 use piaffe::gaits::GAITS;
 use piaffe::model::{Description, FORWARD, Gait, Mode, Then, Transition, UP};
@@ -10,6 +12,7 @@ use piaffe::search::multi_start::{Settings, search};
 use piaffe::stability::{PhaseTracking, TimeTracking, stability};
 use piaffe::verify::integrate::integrate;
 use piaffe::verify::polynomial::Polynomials;
+use walking::walking;
 
 fn optimum(gait: &dyn Gait, criterion: Criterion) -> Motion {
     search(gait, criterion, 0.6, &Settings::default(), &|_| {}).optima[0].local.motion.clone()
@@ -213,11 +216,7 @@ fn the_map_of_time_tracking_is_that_of_simulated_steps() {
     let of_walk = |(gait, criterion): (&'static dyn Gait, Criterion)| {
         (gait as &dyn Gait, format!("{} {criterion:?}", gait.description().key), optimum(gait, criterion))
     };
-    let walks: Vec<_> = GAITS
-        .iter()
-        .filter(|g| !g.description().flies())
-        .flat_map(|g| Criterion::ALL.map(|c| of_walk((*g, c))))
-        .collect();
+    let walks: Vec<_> = walking().flat_map(|g| Criterion::ALL.map(|c| of_walk((*g, c)))).collect();
     let flights = flight::optima();
     let flights =
         flights.iter().map(|(gait, motion)| (gait as &dyn Gait, gait.description().gait.into(), motion.clone()));
@@ -378,9 +377,7 @@ fn along_the_path(tracked: &Tracked, motion: &Motion, phase: usize, entry: f64) 
 #[test]
 fn the_map_of_phase_tracking_is_that_of_simulated_steps() {
     let mut maps = 0;
-    for (gait, criterion) in
-        GAITS.iter().filter(|g| !g.description().flies()).flat_map(|g| Criterion::ALL.map(|c| (*g, c)))
-    {
+    for (gait, criterion) in walking().flat_map(|g| Criterion::ALL.map(|c| (*g, c))) {
         let motion = optimum(gait, criterion);
         let (d, found) = (gait.description(), stability(gait, &motion).unwrap().phase);
         let PhaseTracking::Map { factor, slowest_entry, .. } = found else { continue };

@@ -1,19 +1,17 @@
 //! A walk is a motion in the world: real feet stand still, steps follow each other, velocities are derivatives.
 
-use piaffe::gaits::GAITS;
+#[path = "gaits/walking.rs"]
+mod walking;
+
 use piaffe::model::{Gait, Mode};
 use piaffe::motion::{Criterion, Motion};
 use piaffe::search::multi_start::{Settings, search};
 use piaffe::verify::verify;
 use piaffe::walk::{Point, Walk};
 use std::sync::LazyLock;
+use walking::walking;
 
 const SPEED: f64 = 0.6;
-
-/// Gaits that never leave the ground.
-fn walking() -> impl Iterator<Item = &'static &'static dyn Gait> {
-    GAITS.iter().filter(|g| !g.description().flies())
-}
 
 /// Any optimum of every one of them.
 static MOTIONS: LazyLock<Vec<Motion>> = LazyLock::new(|| {

@@ -188,10 +188,14 @@ pub fn first() -> anyhow::Result<Vec<Loaded>> {
     choices().iter().filter(|choice| !choice.key.contains('/')).map(Choice::gait).collect()
 }
 
+/// The gaits of the robot of a module.
+fn of_module(module: &str) -> impl Iterator<Item = &'static Choice> {
+    choices().iter().filter(move |choice| built::module(choice.key) == module)
+}
+
 /// The gaits of the robot of this one, as far as they can be derived.
 pub fn of_same_robot(key: &str) -> impl Iterator<Item = Loaded> {
-    let module = built::module(key);
-    choices().iter().filter(move |choice| built::module(choice.key) == module).filter_map(|choice| choice.gait().ok())
+    of_module(built::module(key)).filter_map(|choice| choice.gait().ok())
 }
 
 /// The robot whose gaits these are, as its files describe it, and their names; without names all gaits of the robot that needs none.
@@ -205,11 +209,10 @@ pub fn robot_of(names: &[String]) -> anyhow::Result<(Robot, Vec<String>)> {
     let [module] = Vec::from_iter(modules)[..] else {
         return Err(anyhow!("a study is about one robot: {} are gaits of several", names.join(", ")));
     };
-    let of_robot = || choices().iter().filter(|choice| built::module(choice.key) == module);
-    let robot = match of_robot().map(|choice| &choice.origin).next() {
+    let robot = match of_module(module).map(|choice| &choice.origin).next() {
         Some(Origin::Files(robot)) => (**robot).clone().map_err(|why| anyhow!("{why}"))?,
         _ => {
-            let gaits: Vec<Loaded> = of_robot()
+            let gaits: Vec<Loaded> = of_module(module)
                 .filter_map(|choice| if let Origin::Built(gait) = choice.origin { Some(gait) } else { None })
                 .collect();
             Robot::new(of_build_files(module, &gaits))?

@@ -15,6 +15,7 @@ use piaffe_optimizer::search::fastest::{MaximumSpeed, maximum_speed};
 use piaffe_optimizer::search::multi_start::Settings;
 use piaffe_report::Record;
 use piaffe_report::overview::{Greatest, Overview};
+use piaffe_study::{multiples, steps};
 use rayon::prelude::*;
 use std::io::Write;
 use std::path::Path;
@@ -242,15 +243,14 @@ pub fn parse_speeds(text: &str) -> Result<Vec<f64>, String> {
         if to < from {
             return Err(format!("the range ends below its beginning: write {to}..{from}:{step}"));
         }
-        let count = ((to - from) / step + 1e-9).floor();
+        let count = steps(from, to, step);
         if count >= MOST as f64 {
             return Err(format!("the range has {count:.3e} speeds, which is more than {MOST}: take a greater step"));
         }
         if from + step == from {
             return Err(format!("a step of {step} is nothing beside {from}: take a greater step"));
         }
-        // Multiples of the step, free of accumulated rounding.
-        (0..=count as usize).map(|k| rounded(from + k as f64 * step)).collect()
+        multiples(from, step, count as usize)
     } else if text.contains("..") {
         return Err("a range reads FROM..TO:STEP, for example 0.1..1.6:0.1".into());
     } else {
@@ -262,11 +262,6 @@ pub fn parse_speeds(text: &str) -> Result<Vec<f64>, String> {
         count if count > MOST => Err(format!("these are {count} speeds, which is more than {MOST}")),
         _ => Ok(speeds),
     }
-}
-
-/// To the digits that a person may have meant.
-fn rounded(speed: f64) -> f64 {
-    format!("{speed:.11e}").parse().unwrap_or(speed)
 }
 
 #[cfg(test)]

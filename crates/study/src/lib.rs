@@ -24,4 +24,4 @@ pub use question::{File, Files, Question, Unreadable};
 pub use row::{Beyond, Optimum, Pushed, Row, Slopes, Status};
 pub use shard::Shard;
 pub use study::{FEW, Point, Search, Study};
-pub use vary::{Over, Vary};
+pub use vary::{Over, Vary, multiples, steps};

@@ -53,18 +53,24 @@ impl FromStr for Over {
         if step <= 0.0 {
             return Err(format!("a step of {step} leads nowhere: it must be positive"));
         }
-        let count = ((to - from) / step + 1e-9).floor();
+        let count = steps(from, to, step);
         if count >= MOST as f64 || (count > 0.0 && from + step == from) {
             return Err(format!("the range has more than {MOST} values: take a greater step"));
         }
-        // Multiples of the step, free of accumulated rounding.
-        Ok(Over::Values((0..=count as usize).map(|k| rounded(from + k as f64 * step)).collect()))
+        Ok(Over::Values(multiples(from, step, count as usize)))
     }
 }
 
-/// To the digits that a person may have meant.
-fn rounded(number: f64) -> f64 {
-    format!("{number:.11e}").parse().unwrap_or(number)
+/// How many whole steps a range has; one that ends a rounding before its last has that too.
+pub fn steps(from: f64, to: f64, step: f64) -> f64 {
+    ((to - from) / step + 1e-9).floor()
+}
+
+/// Values that follow each other by a step, `count` of them after the first: free of accumulated rounding, with the digits that a
+/// person may have meant.
+pub fn multiples(from: f64, step: f64, count: usize) -> Vec<f64> {
+    let rounded = |number: f64| format!("{number:.11e}").parse().unwrap_or(number);
+    (0..=count).map(|k| rounded(from + k as f64 * step)).collect()
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 
 use super::constraint::Constraint;
 use piaffe_model::motion::HalfStep;
-use piaffe_model::{Description, Mode, Then};
+use piaffe_model::{Description, Mode};
 use piaffe_number::Scalar;
 
 /// A swing as a phase sees it.
@@ -26,16 +26,9 @@ pub struct Swing<T = f64> {
 pub fn swings<T: Scalar>(description: &Description, phases: &[HalfStep<T>], index: usize) -> Vec<Swing<T>> {
     let count = phases.len();
     // What stands `steps` phases later or earlier, in the legs' names of this phase.
-    let mode = |steps: isize| {
-        let at = index as isize + steps;
-        let mode = description.phases[at.rem_euclid(count as isize) as usize].mode;
-        match (description.then, at.div_euclid(count as isize).rem_euclid(2), mode) {
-            (Then::Mirrored, 1, Mode::Stance(leg)) => Mode::Stance(1 - leg),
-            _ => mode,
-        }
-    };
+    let mode = |steps: isize| description.mode(index as isize + steps);
     let duration = |steps: isize| phases[(index as isize + steps).rem_euclid(count as isize) as usize].duration;
-    let in_air: Vec<usize> = (0..2).filter(|leg| mode(0) != Mode::Stance(*leg)).collect();
+    let in_air: Vec<usize> = mode(0).swinging().collect();
     let alone = in_air.len() == 1;
     let swing = |leg: usize| {
         let (mut before, mut after) = (1, 1);

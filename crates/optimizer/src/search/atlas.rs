@@ -117,20 +117,7 @@ fn take_over(
     for (point, known) in line.results.iter_mut().flatten().zip(known.iter().flatten()) {
         let motion = known.motion().and_then(|motion| related(of, &motion, gait.description()));
         let Some(theta) = motion.as_ref().map(theta) else { continue };
-        let (criterion, speed) = (point.criterion, point.speed);
-        let name = format!("{} {} {speed} from {}", gait.description().key, criterion.name(), of.key);
-        let inputs = (common(gait, settings), &point.local_optima, &theta);
-        let (changed, fresh) = step(journal, &name, &inputs, || {
-            let local = Task { gait, criterion, speed }.follow(&theta, &mut |_| Control::Continue);
-            let mut result = point.clone();
-            result.join(gait, &local).then_some(result)
-        });
-        let Some(changed) = changed else { continue };
-        if fresh {
-            journal.point(&changed);
-        }
-        better |= changed.cost != point.cost;
-        *point = changed;
+        better |= bring(gait, point, known.speed, &theta, settings, journal).0;
     }
     better
 }
@@ -176,32 +163,44 @@ fn carry(
     for (line, at) in sources {
         let Some(theta) = lines[line][at].theta() else { continue };
         let from = lines[line][at].speed;
-        let point = &lines[c][k];
-        let (criterion, speed) = (point.criterion, point.speed);
-        let name = format!("{} {} {speed} carried to", gait.description().key, criterion.name());
-        let inputs = (common(gait, settings), &point.local_optima, &theta);
-        let (changed, fresh) = step(journal, &name, &inputs, || {
-            let task = Task { gait, criterion, speed };
-            let local = match point.is_optimal() {
-                true => task.follow(&theta, &mut |_| Control::Continue),
-                false => walk(&task, from, &theta),
-            };
-            let mut result = point.clone();
-            result.join(gait, &local).then_some(result)
-        });
+        let (improved, fresh) = bring(gait, &mut lines[c][k], from, &theta, settings, journal);
+        better |= improved;
         any_fresh |= fresh;
-        if let Some(changed) = changed {
-            if fresh {
-                journal.point(&changed);
-            }
-            better |= changed.cost != point.cost;
-            lines[c][k] = changed;
-        }
     }
     (better, any_fresh)
 }
 
-/// From the optimum of a neighbouring problem at another speed to that of the task, by steps of the speed that lead from optimum to
+/// Brings an optimum of a neighbouring problem, at the speed `from`, to a point; tells whether the point became better, and whether
+/// that was new to the journal.
+fn bring(
+    gait: &dyn Gait,
+    point: &mut GaitResult,
+    from: f64,
+    theta: &[f64],
+    settings: &Settings,
+    journal: &dyn Journal,
+) -> (bool, bool) {
+    let task = Task { gait, criterion: point.criterion, speed: point.speed };
+    let name = format!("{} {} {} carried to", gait.description().key, task.criterion.name(), task.speed);
+    let inputs = (common(gait, settings), &point.local_optima, theta);
+    let (changed, fresh) = step(journal, &name, &inputs, || {
+        let local = match point.is_optimal() {
+            true => task.follow(theta, &mut |_| Control::Continue),
+            false => walk(&task, from, theta),
+        };
+        let mut result = point.clone();
+        result.join(gait, &local).then_some(result)
+    });
+    let Some(changed) = changed else { return (false, fresh) };
+    if fresh {
+        journal.point(&changed);
+    }
+    let better = changed.cost != point.cost;
+    *point = changed;
+    (better, fresh)
+}
+
+/// From the optimum of a neighbouring problem, at this or another speed, to that of the task, by steps of the speed that lead from optimum to
 /// optimum.
 fn walk(task: &Task, mut from: f64, theta: &[f64]) -> Local {
     let (whole, mut theta) = (task.speed - from, theta.to_vec());

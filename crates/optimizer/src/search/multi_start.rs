@@ -126,7 +126,7 @@ pub fn search_watched(
             break;
         }
         let best = so_far.optima.first().filter(|_| first > 0);
-        let confirming = first == 0 && expected != Expected::Nothing;
+        let confirming = first == 0 && settings.starts.is_none() && expected != Expected::Nothing;
         let next = most.min(first + if confirming { CONFIRMING } else { BATCH });
         let batch = (first..next).into_par_iter().map(|k| {
             let end = begin(task, settings.seed, k, best, watch);
@@ -156,16 +156,15 @@ pub fn search_watched(
 
 /// Whether a few starts of its own have confirmed what was expected of a search; `carried` are the ends of what neighbours gave.
 fn is_confirmed(expected: Expected, so_far: &Found, carried: &[End], same: impl Fn(&Local, &Local) -> bool) -> bool {
-    let Effort { starts, successes, .. } = so_far.effort;
-    let asked = starts >= CONFIRMING;
+    let asked = so_far.effort.starts >= CONFIRMING;
     match expected {
         Expected::Nothing => false,
-        Expected::NoMotion => asked && successes == 0 && so_far.optima.is_empty(),
+        Expected::NoMotion => asked && so_far.optima.is_empty(),
         Expected::Theirs => {
             let theirs =
                 |best: &Local| carried.iter().any(|end| end.local.status.is_optimal() && same(&end.local, best));
             // Where there are several optima, a few starts do not tell which is the best.
-            asked && successes >= AGREEING && matches!(&so_far.optima[..], [only] if theirs(&only.local))
+            asked && so_far.effort.successes >= AGREEING && matches!(&so_far.optima[..], [only] if theirs(&only.local))
         }
     }
 }
