@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 use piaffe_model::motion::{HalfStep, Motion};
 use piaffe_model::units::Units;
 use piaffe_model::{Description, FORWARD, Gait, Mode, Rotation, UP};
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{PI, TAU};
 
 /// What distinguishes one start from another.
 #[derive(Clone, Debug)]
@@ -21,7 +21,8 @@ pub struct Plan {
     pub clearance: f64,
     /// How far the platform leads the feet's middle, as a share of the straight leg.
     pub lead: f64,
-    /// Posture that inverse kinematics stays near: share of each joint's range, per joint of a leg.
+    /// Posture that inverse kinematics stays near: share of each joint's range, per joint of a leg; the joint that swings the leg
+    /// puts the foot under the hip instead.
     pub posture: Vec<f64>,
     /// Pitch of a platform that pitches, rad.
     pub pitch: f64,
@@ -98,7 +99,7 @@ struct Target {
 /// The walk or run of a plan at a mean speed (m/s).
 pub fn walk(gait: &dyn Gait, plan: &Plan, speed: f64) -> Motion {
     let d = gait.description();
-    let nominal = nominal_posture(d, plan);
+    let nominal = nominal_posture(gait, plan);
     let stances = |k: &usize| d.phases[*k].mode != Mode::Flight;
     let on_foot = || (0..d.phases.len()).filter(stances);
     let mut durations = plan.durations.clone();
@@ -116,27 +117,41 @@ pub fn walk(gait: &dyn Gait, plan: &Plan, speed: f64) -> Motion {
     Motion { half_steps }
 }
 
-fn nominal_posture(d: &Description, plan: &Plan) -> Vec<f64> {
+/// The posture of a plan with both feet under their hips, as far as the stops admit it: whatever a joint's zero means.
+fn nominal_posture(gait: &dyn Gait, plan: &Plan) -> Vec<f64> {
+    let d = gait.description();
     let mut q = vec![0.0; d.orientations()];
-    if d.rotation == Rotation::Pitch {
-        q[d.joints()] = plan.pitch;
-    }
     for leg in &d.legs {
         for (depth, j) in (leg.first_joint..leg.end_joint).enumerate() {
-            let [lo, hi] = bend(d, j);
+            let [lo, hi] = d.joints[j].range;
             let share = plan.posture.get(depth).copied().unwrap_or(0.5);
             q[j] = lo + share * (hi - lo);
         }
     }
+    for leg in 0..2 {
+        let Some(hip) = swings(d, leg) else { continue };
+        q[hip] = 0.0;
+        let [x, y] = foot_from_hip(gait, &q, leg);
+        q[hip] = turned(-x.atan2(-y) - plan.pitch, d.joints[hip].range);
+    }
+    if d.rotation == Rotation::Pitch {
+        q[d.joints()] = plan.pitch;
+    }
     q
 }
 
-/// The part of a joint's range that a walk is drawn from, rad: a leg hangs, so that the platform's joints turn by no more than
-/// a quarter of a turn, however far they could.
-fn bend(d: &Description, j: usize) -> [f64; 2] {
-    let [lo, hi] = d.joints[j].range;
-    let hangs = [lo.max(-FRAC_PI_2), hi.min(FRAC_PI_2)];
-    if d.hangs_on_platform(j) && hangs[0] < hangs[1] { hangs } else { [lo, hi] }
+/// The joint that swings a leg to and fro: the first that turns in the sagittal plane.
+fn swings(d: &Description, leg: usize) -> Option<usize> {
+    const PITCH: usize = 2;
+    let joints = d.legs[leg].first_joint..d.legs[leg].end_joint;
+    joints.into_iter().find(|j| d.bodies.iter().any(|b| b.coordinate == Some(*j) && b.axis == PITCH))
+}
+
+/// The same direction within the stops, rad: of several turns the one nearest to their middle, of none the nearer stop.
+fn turned(angle: f64, [lo, hi]: [f64; 2]) -> f64 {
+    let middle = 0.5 * (lo + hi);
+    let nearest = middle + (angle - middle + PI).rem_euclid(TAU) - PI;
+    nearest.clamp(lo, hi)
 }
 
 fn phase(gait: &dyn Gait, course: &Course, k: usize, nominal: &[f64]) -> HalfStep {
@@ -192,7 +207,7 @@ impl Course<'_> {
     /// The platform moves evenly forward. It is thrown up and caught as a flight of its duration demands, like a mass on a spring.
     fn platform(&self, k: usize, s: f64) -> [f64; 2] {
         let (leg, t) = (self.d.leg_length(), self.durations[k]);
-        let height = self.plan.height * leg - self.hip(0)[UP];
+        let height = self.plan.height * leg - hip(self.d, 0)[UP];
         let x = self.speed * (self.start(k as isize) + s * t) + self.plan.lead * leg;
         let thrown =
             |i: isize| if self.d.mode(i) == Mode::Flight { 0.5 * self.d.gravity * self.duration(i) } else { 0.0 };
@@ -223,27 +238,30 @@ impl Course<'_> {
 
     /// Where the foot of a leg stands in the `i`-th phase.
     fn print(&self, i: isize, leg: usize) -> f64 {
-        self.speed * (self.start(i) + 0.5 * self.duration(i)) + self.hip(leg)[FORWARD]
-    }
-
-    /// Hip of a virtual leg from the platform's mass centre.
-    fn hip(&self, leg: usize) -> [f64; 3] {
-        let first = self.d.legs[leg].first_joint;
-        let hip = self.d.bodies.iter().find(|b| b.parent == Some(0) && b.coordinate == Some(first));
-        hip.map_or([0.0; 3], |b| b.offset)
+        self.speed * (self.start(i) + 0.5 * self.duration(i)) + hip(self.d, leg)[FORWARD]
     }
 }
 
 /// Distance of leg 1's foot from its hip in the posture of a plan, m.
 fn reach(gait: &dyn Gait, plan: &Plan) -> f64 {
+    let [x, y] = foot_from_hip(gait, &nominal_posture(gait, &Plan { pitch: 0.0, ..plan.clone() }), 0);
+    x.hypot(y)
+}
+
+/// Where a leg's foot is from its hip under a level platform, forward and up, m.
+fn foot_from_hip(gait: &dyn Gait, q: &[f64], leg: usize) -> [f64; 2] {
     let d = gait.description();
-    let level = nominal_posture(d, &Plan { pitch: 0.0, ..plan.clone() });
     let (shape, mut out) = (&d.shapes.stance.placement, d.shapes.stance.placement.zeros());
-    gait.placement(Mode::Stance(0), &level, &mut out);
-    let hip = d.bodies.iter().find(|b| b.parent == Some(0) && b.coordinate == Some(d.legs[0].first_joint));
-    let [x, y, _] = hip.map_or([0.0; 3], |b| b.offset);
-    let platform = shape.p.of(&out);
-    (platform[FORWARD] + x).hypot(platform[UP] + y)
+    gait.placement(Mode::Stance(leg), q, &mut out);
+    let (platform, hip) = (shape.p.of(&out), hip(d, leg));
+    [FORWARD, UP].map(|c| -platform[c] - hip[c])
+}
+
+/// Hip of a virtual leg from the platform's mass centre, in its axes, m.
+fn hip(d: &Description, leg: usize) -> [f64; 3] {
+    let first = d.legs[leg].first_joint;
+    let body = d.bodies.iter().find(|b| b.parent == Some(0) && b.coordinate == Some(first));
+    body.map_or([0.0; 3], |b| b.offset)
 }
 
 /// Configuration that places platform and the other foot, near a posture: damped least squares.
