@@ -9,7 +9,7 @@ const STORK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/any_robot/stork"
 const SHIPPED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/model-spec");
 
 fn piaffe_in(folder: &Path, arguments: &str) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_piaffe")).args(arguments.split(' ')).current_dir(folder).output().unwrap()
+    Command::new(env!("CARGO_BIN_EXE_piaffe")).args(arguments.split_whitespace()).current_dir(folder).output().unwrap()
 }
 
 fn text(bytes: &[u8]) -> String {
@@ -155,4 +155,43 @@ fn what_is_no_robot_is_said_with_its_place_and_a_remedy() {
     fails(folder.path(), trot, 1, "did you mean `mass`?");
     // Which does not keep other robots from walking.
     succeeds(folder.path(), "model rabbit/walk", "");
+}
+
+/// Limits and loads that are asked for are those of the files that say the same.
+#[test]
+fn what_is_asked_for_beside_the_files_is_what_files_would_say() {
+    let folder = tempdir().unwrap();
+    let optimum =
+        |asked: &str| timeless(result(folder.path(), &format!("optimize trot --speed 0.6 --starts 1 {asked}"), ""));
+    let same = [
+        ("--friction 0.9", "--set limits.friction=0.9"),
+        ("--clearance 0.01", "--set limits.swing_clearance=0.01"),
+        ("--min-force 20", "--set limits.min_vertical_force=20"),
+        ("--platform-height 0.2", "--set limits.min_platform_height=0.2"),
+        (
+            "--duration 0.1,0.22",
+            "--set limits.half_step_duration.shortest=0.1 --set limits.half_step_duration.longest=0.22",
+        ),
+        ("--torque-scale 0.5", "--set actuators.haunch_motor.max_torque=0.2 --set actuators.knee_motor.max_torque=0.2"),
+    ];
+    let plain = optimum("");
+    for (option, setting) in same {
+        let asked = optimum(option);
+        assert!(asked == optimum(setting), "{option}");
+        assert_ne!(asked["fingerprint"], plain["fingerprint"], "{option}");
+    }
+    let cost = |result: &Value| result["cost"].as_f64().unwrap();
+    assert!(cost(&optimum("--duration 0.1,0.22")) > cost(&plain));
+    // A kilogram at the mass centre is a heavier platform; anywhere in a platform that neither pitches nor rolls it weighs the same.
+    let heavier = optimum("--set links.platform.mass=7.65");
+    assert!((cost(&optimum("--payload 1@0,0,0")) / cost(&heavier) - 1.0).abs() < 1e-9);
+    assert!(cost(&heavier) > 1.05 * cost(&plain));
+    let flying =
+        |asked: &str| result(folder.path(), &format!("optimize running_trot --speed 1 --starts 1 {asked}"), "");
+    let slow = flying("--duration 0.2,0.5");
+    assert!(slow["durations"][0].as_f64().unwrap() >= 0.2 && slow["durations"][1].as_f64().unwrap() < 0.1, "{slow}");
+    fails(folder.path(), "optimize trot --speed 0.6 --payload 1", 2, "MASS@X,Y,Z");
+    fails(folder.path(), "optimize trot --speed 0.6 --friction 0", 2, "more than 0");
+    fails(folder.path(), "optimize trot --speed 0.6 --duration 0.5,0.1", 2, "shorter one first");
+    fails(folder.path(), "verify --friction 1 x.json", 1, "x.json");
 }

@@ -18,7 +18,7 @@ fn case(name: &str) -> String {
 #[test]
 fn what_is_imported_passes_the_check_and_is_drawn() {
     let folder = tempfile::tempdir().unwrap();
-    let made = piaffe(&["import", &case("00-control-ok.urdf"), "--out", "dog"], folder.path());
+    let made = piaffe(&["import", &case("00-control-ok.urdf"), "--out", "dog", "--untried"], folder.path());
     assert!(made.status.success(), "{}", words(&made));
     let checked = piaffe(&["check", "dog", "--svg", "dog.svg"], folder.path());
     assert!(
@@ -50,6 +50,36 @@ fn what_cannot_be_imported_leaves_nothing_behind() {
         assert!(!made.status.success(), "{}", words(&made));
         assert!(!folder.path().join(out).exists(), "{file}");
     }
-    let made = piaffe(&["import", &case("12-y-forward.urdf"), "--out", "dog", "--forward", "-y"], folder.path());
+    let made =
+        piaffe(&["import", &case("12-y-forward.urdf"), "--out", "dog", "--forward", "-y", "--untried"], folder.path());
     assert!(made.status.success(), "{}", words(&made));
+}
+
+/// From a file to a page, by the commands that the import itself gives.
+#[test]
+fn what_is_imported_has_been_tried_and_goes() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = piaffe(&["import", &case("sensor_foot.urdf"), "--out", "biped"], folder.path());
+    assert!(made.status.success(), "{}", words(&made));
+    let told = words(&made);
+    let commands: Vec<Vec<&str>> =
+        told.lines().filter_map(|line| Some(line.strip_prefix("  piaffe ")?.split(' ').collect())).collect();
+    assert_eq!(commands.len(), 2, "{told}");
+    for command in commands {
+        let out = piaffe(&command, folder.path());
+        assert!(out.status.success(), "{command:?}: {}", words(&out));
+    }
+    let text = std::fs::read_to_string(folder.path().join("biped/gaits/walk.toml")).unwrap();
+    assert!(
+        text.contains("# Least torque that a short search found") && text.contains("# It found nothing at"),
+        "{text}"
+    );
+    // What is said of the gait holds: it is found again.
+    let (_, costs) = text.split_once("(local optima): ").unwrap();
+    let (cost, rest) = costs.split_once(" at ").unwrap();
+    let (speed, _) = rest.split_once(" m/s").unwrap();
+    let again = ["optimize", "walk", "--robot", "biped", "--criterion", "torque", "--speed", speed, "--json", "-"];
+    let again: serde_json::Value = serde_json::from_slice(&piaffe(&again, folder.path()).stdout).unwrap();
+    let (known, again): (f64, f64) = (cost.parse().unwrap(), again["cost"].as_f64().unwrap());
+    assert!(again < known * (1.0 + 1e-4), "{again} {known}");
 }

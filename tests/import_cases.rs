@@ -486,3 +486,18 @@ fn hostile_numbers_and_torn_files_do_not_panic() {
         assert!(import(&control[..end], &Options::default()).is_err());
     }
 }
+
+/// A dog whose knees stay bent cannot trot without flight: it is given a trot that flies.
+#[test]
+fn where_only_flight_makes_a_trot_possible_that_is_the_trot() {
+    let stiff = text("00-control-ok.urdf").replace(r#"upper="-0.1""#, r#"upper="-1.6""#);
+    let made = import(&stiff, &Options::default()).unwrap().tried(&|gait| gait.contains("trot"));
+    builds(&made);
+    assert_eq!(gaits(&made), ["trot.toml"]);
+    assert!(
+        made.gaits[0].1.contains("stance = []")
+            && made.gaits[0].1.contains("# It flies: without flight none was found")
+    );
+    assert!(made.notes.iter().any(|note| note.starts_with("the trot flies: ")), "{:#?}", made.notes);
+    assert!(made.found[0].gait == "trot" && made.found[0].speeds.len() >= 3, "{:?}", made.found);
+}

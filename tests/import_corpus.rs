@@ -61,6 +61,40 @@ fn corpus() -> (Vec<PathBuf>, Vec<String>) {
     (all("file ").into_iter().map(PathBuf::from).collect(), all("missing "))
 }
 
+/// What a file is given on the command line.
+fn options(path: &str) -> &'static [(&'static str, &'static str)] {
+    GIVEN.iter().find(|(end, _)| path.ends_with(end)).map_or(&[][..], |(_, given)| given)
+}
+
+/// A table of all that import: what they needed, and which gaits a trial finds, up to which of the speeds that it asks for.
+#[test]
+#[ignore = "an hour of processor time"]
+fn robots_of_the_world_walk() {
+    let (files, missing) = corpus();
+    let (mut imported, mut go) = (0, 0);
+    for file in &files {
+        let path = file.display().to_string();
+        let given_to_it = options(&path);
+        let Ok(made) = import(&std::fs::read_to_string(file).unwrap(), &given(given_to_it)) else { continue };
+        let started = Instant::now();
+        let made = made.tried(&|_| true);
+        let gaits: Vec<String> = made
+            .found
+            .iter()
+            .map(|found| format!("{} ({})", found.gait, found.speeds.iter().copied().fold(0.0, f64::max)))
+            .collect();
+        let needed: Vec<String> =
+            given_to_it.iter().map(|(option, value)| format!("`{option} {value}`").replace(" `", "`")).collect();
+        let name = file.components().rev().take(2).map(|part| part.as_os_str().to_string_lossy()).collect::<Vec<_>>();
+        let seconds = started.elapsed().as_secs();
+        println!("| {}/{} | {} | {} | <!-- {seconds} s -->", name[1], name[0], needed.join(" "), gaits.join(", "));
+        imported += 1;
+        go += usize::from(!gaits.is_empty());
+    }
+    println!("{go} of {imported}");
+    assert!(!missing.is_empty() || go >= 35, "{go} of {imported}");
+}
+
 #[test]
 fn robots_of_the_world_import_or_are_refused_for_a_reason() {
     let (files, missing) = corpus();
@@ -76,7 +110,7 @@ fn robots_of_the_world_import_or_are_refused_for_a_reason() {
             break;
         }
         let path = file.display().to_string();
-        let options = GIVEN.iter().find(|(end, _)| path.ends_with(end)).map_or(&[][..], |(_, given)| given);
+        let options = options(&path);
         let text = std::fs::read_to_string(file).unwrap();
         match import(&text, &given(options)) {
             Ok(made) => {

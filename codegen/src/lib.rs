@@ -8,6 +8,7 @@
 
 #![forbid(unsafe_code)]
 
+mod changes;
 mod config;
 pub mod dynamics;
 pub mod emit;
@@ -18,4 +19,5 @@ pub mod spec;
 mod turns;
 pub mod typeset;
 
+pub use changes::{Changes, Load};
 pub use config::{Config, Generated, RobotFiles, SpecFile, Specified, check, generate, generate_families, specified};

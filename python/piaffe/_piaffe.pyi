@@ -65,6 +65,7 @@ class Robot:
         up: str | None = None,
         alike: float = 1e-3,
         mend: bool = False,
+        tried: bool = True,
     ) -> Robot:
         """The robot of a URDF or MJCF. What the file does not say is given, or assumed and told in `notes`.
 
@@ -73,7 +74,8 @@ class Robot:
         that does, m. `effort` (N·m), `velocity` (rad/s), `gear` (motor turns per turn of the joint) and `rotor` (kg·m² at the
         motor) are numbers for all joints that have none, or by joint. `range` has stops by joint, rad. `forward` and `up` are
         axes of the root link, such as "-y". Legs that differ by no more than the share `alike` are made alike. `mend` takes
-        the nearest possible inertia where no body has the one of the file.
+        the nearest possible inertia where no body has the one of the file. With `tried`, the gaits are those that the robot
+        can do, which takes seconds; else those that legs like these have.
         """
     @property
     def name(self) -> str:

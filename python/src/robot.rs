@@ -1,7 +1,7 @@
 //! Robots and their gaits.
 
 use crate::error::{Error, SpecificationError};
-use crate::work::apart;
+use crate::work::{Stop, apart, work};
 use piaffe::import::{Direction, FootPoint, Lock, Options, Setting, Stops, import};
 use piaffe::interpreter::{Interpreted, Unloadable};
 use piaffe::model::Gait as _;
@@ -106,14 +106,16 @@ impl Robot {
     /// m. `effort` (N·m), `velocity` (rad/s), `gear` (motor turns per turn of the joint) and `rotor` (kg·m² at the motor) are
     /// numbers for all joints that have none, or by joint. `range` has stops by joint, rad. `forward` and `up` are axes of the root
     /// link, such as "-y". Legs that differ by no more than the share `alike` are made alike. `mend` takes the nearest possible
-    /// inertia where no body has the one of the file.
+    /// inertia where no body has the one of the file. With `tried`, the gaits are those that the robot can do, which takes seconds;
+    /// else those that legs like these have.
     #[staticmethod]
     #[pyo3(signature = (
         path, *, lock = None, foot = None, effort = None, velocity = None, gear = None, rotor = None, range = None, forward = None,
-        up = None, alike = 1e-3, mend = false
+        up = None, alike = 1e-3, mend = false, tried = true
     ))]
     #[allow(clippy::too_many_arguments)]
     fn from_urdf(
+        py: Python<'_>,
         path: PathBuf,
         lock: Option<&Bound<'_, PyAny>>,
         foot: Option<&Bound<'_, PyAny>>,
@@ -126,6 +128,7 @@ impl Robot {
         up: Option<String>,
         alike: f64,
         mend: bool,
+        tried: bool,
     ) -> PyResult<Robot> {
         if !(0.0..=0.5).contains(&alike) {
             return Err(Error::new_err(format!("`alike` is {alike}, and must be between 0 and 0.5")));
@@ -159,6 +162,10 @@ impl Robot {
             std::fs::read_to_string(&path).map_err(|why| PyOSError::new_err(format!("cannot read {name}: {why}")))?;
         let made = import(&text, &options)
             .map_err(|faults| SpecificationError::new_err(format!("cannot import {name}: {faults}")))?;
+        let made = match tried {
+            true => work(py, None, Stop::default(), |stop| made.tried(&|_| !stop.is_wanted()))?,
+            false => made,
+        };
         let gaits = made.gaits.into_iter().map(|(path, text)| SpecFile { path, text }).collect();
         let robot = SpecFile { path: "robot.toml".into(), text: made.robot };
         Robot::of(RobotFiles { module: String::new(), robot, gaits }, made.notes)

@@ -76,6 +76,9 @@ def test_a_robot_of_another_format_walks(tmp_path: Path) -> None:
     assert pickle.loads(pickle.dumps(robot)).notes == robot.notes
     result = piaffe.optimize(robot.gait(robot.gaits[0]), 0.4)
     assert result.optimal and result.verify()
+    assert any("Least torque that a short search found" in text for text in robot.files.values())
+    untried = piaffe.Robot.from_urdf(urdf(tmp_path, 60.0), tried=False)
+    assert untried.gaits == ["walk"] and untried.files["robot.toml"] == robot.files["robot.toml"]
 
 
 def test_options_of_an_import_are_the_robots(tmp_path: Path) -> None:

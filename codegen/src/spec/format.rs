@@ -113,7 +113,7 @@ pub(super) const AXES: &[&str] = &["roll", "yaw", "pitch"];
 
 pub(super) static JOINT: Table = Table {
     noun: "a joint",
-    doc: "A joint with one degree of freedom. At zero the leg is straight and points down.",
+    doc: "A joint with one degree of freedom. Its angle counts from where the axes of its links are the platform's.",
     keys: &[
         Key::new("parent", Name, "", "The link on which the joint hangs."),
         Key::new("child", Name, "", "The link that the joint carries."),
@@ -293,3 +293,20 @@ pub(super) static LIMITS: Table = Table {
         .or("0"),
     ],
 };
+
+/// Whether a name leads to a number that a file may leave out: `limits.min_platform_height`, `links.shin.foot_mass`.
+pub(super) fn may_be_absent(name: &str) -> bool {
+    let parts: Vec<&str> = name.split('.').collect();
+    [&ROBOT, &GAIT].into_iter().any(|table| is_optional(table, &parts))
+}
+
+fn is_optional(table: &'static Table, parts: &[&str]) -> bool {
+    let [first, rest @ ..] = parts else { return false };
+    let Some(key) = table.keys.iter().find(|key| key.name == *first) else { return false };
+    match (&key.kind, rest) {
+        (Number(_), []) => key.default.is_some(),
+        (Kind::Table(table), rest) => is_optional(table, rest),
+        (Map(tables), [_, rest @ ..]) => tables.iter().any(|table| is_optional(table, rest)),
+        _ => false,
+    }
+}

@@ -6,7 +6,7 @@
 //! satisfy beyond its form is checked in `bodies.rs`, `tree.rs`, `chain.rs` (robot), `pairing.rs`, `mirror.rs`,
 //! `coordinates.rs` and `phases.rs` (gait).
 //!
-//! `set.rs` changes numbers where they stand in the files.
+//! `set.rs` changes numbers where they stand in the files, `load.rs` puts a load on the platform.
 //!
 //! What gaits make of legs is in `locked.rs` (joints held still) and `as_one.rs` (legs that move as one).
 //!
@@ -29,6 +29,7 @@ mod field;
 mod format;
 mod gait;
 mod keys;
+mod load;
 mod locked;
 mod mirror;
 pub(crate) mod modules;
@@ -51,9 +52,10 @@ mod tests;
 pub use code::Code;
 pub use diagnostic::{Diagnostic, Label, Source, Span};
 pub use gait::parse_gait;
+pub use load::load;
 pub use locked::Tilted;
 pub use name::unusable_as_folder;
 pub use robot::{RobotFile, parse_robot};
 pub use schema::{gait_schema, robot_schema};
-pub use set::{alternatives, number, numbers, set, unknown};
+pub use set::{alternatives, is_duration_on_a_foot, number, numbers, set, unknown};
 pub use types::*;

@@ -3,6 +3,7 @@
 //! Their names are the keys that lead to them, as in `links.thigh.mass`; of a list's elements those that say what they are:
 //! `legs.fore_left.mount.x`, `joints.knee.range.lower`, `phases.1.duration.shortest`. Places of legs' mounts at the same distance to either side stay so.
 
+use super::format::may_be_absent;
 use super::nearest::nearest;
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};
@@ -14,10 +15,13 @@ pub struct Number {
     span: Range<usize>,
 }
 
-/// The text of a file with another number in it; `None` if no number there is called like this.
+/// The text of a file with another number in it, where one stands or where one may be absent; `None` if no number there is called
+/// like this.
 pub fn set(text: &str, name: &str, value: f64) -> Option<String> {
     let numbers = numbers(text);
-    let old = numbers.iter().find(|number| number.name == name)?.value;
+    let Some(old) = numbers.iter().find(|number| number.name == name).map(|number| number.value) else {
+        return if may_be_absent(name) { insert(text, name, &written(value)) } else { None };
+    };
     let mut changed = text.to_string();
     // From behind: what is before stays where it is.
     for number in numbers.iter().rev() {
@@ -26,6 +30,31 @@ pub fn set(text: &str, name: &str, value: f64) -> Option<String> {
         }
     }
     Some(changed)
+}
+
+/// The text of a file with a key that it lacks, beside a number of the same table; `None` if it has none.
+pub(super) fn insert(text: &str, name: &str, value: &str) -> Option<String> {
+    let (table, key) = name.rsplit_once('.')?;
+    let all = numbers(text);
+    let beside = all.iter().find_map(|number| {
+        let key = number.name.strip_prefix(table)?.strip_prefix('.')?;
+        (!key.contains('.')).then_some((number, key))
+    });
+    let (number, neighbour) = beside?;
+    let line = text[..number.span.start].rfind('\n').map_or(0, |end| end + 1);
+    let before = text[line..number.span.start].trim_end().strip_suffix('=')?.trim_end();
+    let before = before.trim_end_matches(['"', '\'']).strip_suffix(neighbour)?.trim_end_matches(['"', '\'']);
+    let changed = match before.trim_end().chars().next_back() {
+        // Inside of braces.
+        Some('{' | ',') => {
+            let (head, tail) = text.split_at(line + before.len());
+            format!("{head}{key} = {value}, {tail}")
+        }
+        // A line of its own, below the table's name or behind it.
+        _ => format!("{}{before}{key} = {value}\n{}", &text[..line], &text[line..]),
+    };
+    let there = |number: &Number| number.name == name || number.name.starts_with(&format!("{name}."));
+    numbers(&changed).iter().any(there).then_some(changed)
 }
 
 /// The number of this name in the text of a file.
@@ -80,6 +109,18 @@ pub fn numbers(text: &str) -> Vec<Number> {
     }
     numbers.sort_by_key(|number| number.span.start);
     numbers
+}
+
+/// Whether a name is that of the duration of a phase in which a foot stands: `phases.1.duration`.
+pub fn is_duration_on_a_foot(text: &str, name: &str) -> bool {
+    let stands = || {
+        let number: usize = name.strip_prefix("phases.")?.strip_suffix(".duration")?.parse().ok()?;
+        let table = DeTable::parse(text).ok()?;
+        let phase = table.get_ref().get("phases")?.get_ref().as_array()?.get(number.checked_sub(1)?)?;
+        let stance = phase.get_ref().as_table()?.get("stance")?.get_ref().as_array()?;
+        Some(!stance.is_empty())
+    };
+    stands().unwrap_or(false)
 }
 
 fn in_table(table: &DeTable, path: &str, numbers: &mut Vec<Number>) {
@@ -145,6 +186,22 @@ mod tests {
         assert_eq!(changed, ROBOT.replace("[-1.5, 0.0]", "[-2, 0.0]"));
         assert_eq!(set(ROBOT, "links.thigh", 1.0), None);
         assert_eq!(set("[", "gravity", 1.0), None);
+    }
+
+    #[test]
+    fn a_number_that_may_be_absent_is_put_beside_others() {
+        let gait = "[limits]\n  friction = 1.0 # of feet\n";
+        let changed = set(gait, "limits.min_platform_height", 0.25).unwrap();
+        assert_eq!(changed, "[limits]\n  min_platform_height = 0.25\n  friction = 1.0 # of feet\n");
+        let changed = set("limits = { friction = 1.0 }", "limits.body_clearance", 0.5).unwrap();
+        assert_eq!(changed, "limits = { body_clearance = 0.5, friction = 1.0 }");
+        let changed = set("limits.\"friction\" = 1.0\n", "limits.body_clearance", 0.5).unwrap();
+        assert_eq!(changed, "limits.body_clearance = 0.5\nlimits.\"friction\" = 1.0\n");
+        let changed = set(ROBOT, "links.thigh.foot_mass", 0.1).unwrap();
+        assert_eq!(changed, ROBOT.replace("mass = 1.6", "foot_mass = 0.1\nmass = 1.6"));
+        assert_eq!(set(gait, "limits.swing_clearance", 1.0), None, "who has none must say so");
+        assert_eq!(set("gravity = 9.81", "links.thigh.foot_mass", 1.0), None, "there is no such link");
+        assert_eq!(set(gait, "limits.colour", 1.0), None);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! A validated specification: plain values, every reference resolved, nothing left to check.
 //!
-//! Frames: body axes x forward, y up, z to the right, all joints at zero = legs straight down.
+//! Frames: body axes x forward, y up, z to the right, the same for all bodies where all joints are at zero.
 //! SI units, except motor speeds (rev/min), which is how data sheets state them.
 
 /// The real robot: a platform and its legs, in real-leg values.

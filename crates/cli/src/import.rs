@@ -1,9 +1,9 @@
 //! `piaffe import`: a URDF or MJCF becomes a folder with a specification that builds.
 
-use super::{built, input, output, whole};
+use super::{built, input, optimize, output, whole};
 use anyhow::{Context, bail};
 use piaffe_codegen::{RobotFiles, SpecFile, check};
-use piaffe_import::{Direction, FootPoint, Lock, Options, Setting, Stops, import};
+use piaffe_import::{Direction, FootPoint, Found, Import, Lock, Options, Setting, Stops, import};
 use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
@@ -48,6 +48,9 @@ pub struct Arguments {
     /// Take the nearest possible inertia where no body has the one of the file.
     #[arg(long)]
     mend: bool,
+    /// Write gaits that legs like these have without a trial whether the robot can do them.
+    #[arg(long)]
+    untried: bool,
 }
 
 fn share(text: &str) -> Result<f64, String> {
@@ -59,7 +62,7 @@ fn share(text: &str) -> Result<f64, String> {
 }
 
 pub fn run(arguments: Arguments) -> anyhow::Result<bool> {
-    let Arguments { file, folder, lock, foot, effort, velocity, gear, rotor, range, forward, up, alike, mend } =
+    let Arguments { file, folder, lock, foot, effort, velocity, gear, rotor, range, forward, up, alike, mend, untried } =
         arguments;
     let options = Options {
         locks: lock,
@@ -77,13 +80,18 @@ pub fn run(arguments: Arguments) -> anyhow::Result<bool> {
     let text = input::read_text(&file)?;
     let made = import(&text, &options).with_context(|| format!("cannot import {}", input::name(&file)))?;
     let folder = folder.unwrap_or_else(|| Path::new("model-spec").join(&made.folder));
-    let mut files = vec![(folder.join("robot.toml"), made.robot)];
-    files.extend(made.gaits.into_iter().map(|(name, text)| (folder.join("gaits").join(name), text)));
     let gaits = folder.join("gaits");
-    let known = files.iter().map(|(path, _)| path).find(|path| path.exists());
-    if let Some(known) = known.or(Some(&gaits).filter(|gaits| gaits.is_dir())) {
+    let known = [folder.join("robot.toml"), gaits.clone()].into_iter().find(|path| path.exists());
+    if let Some(known) = known {
         bail!("{} exists already: give another folder (--out), or remove it", known.display());
     }
+    let files = |made: &Import| -> Vec<(PathBuf, String)> {
+        let gaits = made.gaits.iter().map(|(name, text)| (gaits.join(name), text.clone()));
+        [(folder.join("robot.toml"), made.robot.clone())].into_iter().chain(gaits).collect()
+    };
+    builds(&folder, &files(&made))?;
+    let made = if untried { made } else { tried(made) };
+    let files = files(&made);
     builds(&folder, &files)?;
     std::fs::create_dir_all(&gaits).with_context(|| format!("cannot create {}", gaits.display()))?;
     for (path, text) in &files {
@@ -94,10 +102,32 @@ pub fn run(arguments: Arguments) -> anyhow::Result<bool> {
     for note in &made.notes {
         output::say!("- {note}");
     }
-    output::say!(
-        "\nThe build reads every folder of model-spec/ that has a robot.toml: build again, and its gaits are there."
-    );
+    output::say!("");
+    if let Some((gait, speed)) = to_begin_with(&made.found) {
+        let folder = folder.display();
+        output::say!("To see it go:");
+        output::say!("  piaffe optimize {gait} --robot {folder} --speed {speed} --json {gait}.json");
+        output::say!("  piaffe report {gait}.json --out {gait}");
+    }
+    output::say!("The next build has the gaits too, if the folder is in model-spec/.");
     Ok(true)
+}
+
+/// The gait that goes at most speeds, and one of them, m/s.
+fn to_begin_with(found: &[Found]) -> Option<(&str, f64)> {
+    let best = found.iter().rev().max_by_key(|found| found.speeds.len())?;
+    Some((&best.gait, *best.speeds.get(best.speeds.len() / 2)?))
+}
+
+/// With the gaits that the robot can do.
+fn tried(made: Import) -> Import {
+    let bar = optimize::progress(None);
+    let made = made.tried(&|gait| {
+        bar.set_message(format!("trying {gait}"));
+        true
+    });
+    bar.finish_and_clear();
+    made
 }
 
 /// The last word before anything is written: what a build would say of these files in this folder.

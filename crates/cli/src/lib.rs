@@ -2,6 +2,7 @@
 
 #![forbid(unsafe_code)]
 
+mod asked;
 mod built;
 mod check;
 mod diff;
@@ -28,14 +29,16 @@ mod sweep;
 mod verify;
 mod whole;
 
+use asked::Asked;
 pub use built::Build;
 use clap::builder::{PossibleValuesParser, ValueParser};
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
+use piaffe_codegen::Changes;
 use piaffe_model::motion::Criterion;
 use piaffe_optimizer::search::local::Task;
 use piaffe_optimizer::search::multi_start::Settings;
-use robots::{Setting, by_name};
+use robots::by_name;
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -78,9 +81,8 @@ struct Arguments {
     /// Needs no compiler. Where the folder model-spec/ is here and has changed since the build, its files are taken too.
     #[arg(long, global = true, value_name = "DIR")]
     robot: Option<PathBuf>,
-    /// Another number in the specification, for this run: links.thigh.mass=1.2, limits.friction=0.8; may be given several times.
-    #[arg(long, global = true, value_name = "NAME=NUMBER", allow_hyphen_values = true)]
-    set: Vec<Setting>,
+    #[command(flatten)]
+    asked: Asked,
     /// Say nothing but errors, and what was asked for with `-`.
     #[arg(long, short, global = true)]
     quiet: bool,
@@ -339,15 +341,15 @@ fn read(typed: &[OsString]) -> Result<Arguments, u8> {
     };
     let chosen = match Arguments::try_parse_from(typed) {
         Ok(first) if first.is_of_no_robot() => {
-            if first.robot.is_some() || !first.set.is_empty() {
-                let why = "--robot and --set are for commands about a robot's gaits and results";
+            if first.robot.is_some() || !first.asked.changes().is_empty() {
+                let why = "--robot, --set and limits are for commands about a robot's gaits and results";
                 return Err(usage(command().error(ErrorKind::ArgumentConflict, why)));
             }
             robots::choose_built();
             Ok(())
         }
-        Ok(first) => robots::choose(first.robot.as_deref(), &first.set),
-        Err(_) => robots::choose(None, &[]),
+        Ok(first) => robots::choose(first.robot.as_deref(), &first.asked.changes()),
+        Err(_) => robots::choose(None, &Changes::default()),
     };
     if let Err(error) = chosen {
         output::error(&error);
@@ -406,7 +408,7 @@ fn gait_names_or_all() -> ValueParser {
 
 /// Does what was asked for.
 fn answer(arguments: Arguments) -> anyhow::Result<bool> {
-    let of_paper = arguments.robot.is_none() && arguments.set.is_empty();
+    let of_paper = arguments.robot.is_none() && arguments.asked.changes().is_empty();
     match arguments.command {
         None => main_job::run(&arguments.out, of_paper),
         Some(Command::Check { folder, svg }) => check::run(&folder, svg.as_deref()),

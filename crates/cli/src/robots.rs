@@ -6,38 +6,17 @@
 use super::built::{self, Changed};
 use super::output;
 use anyhow::{Context, anyhow};
-use piaffe_codegen::{RobotFiles, SpecFile};
+use piaffe_codegen::{Changes, RobotFiles, SpecFile};
 use piaffe_interpreter::Robot;
 use piaffe_model::{Gait, Specification};
 use piaffe_optimizer::origin::{Foreign, is_of};
 use piaffe_optimizer::result::GaitResult;
 use std::collections::BTreeSet;
 use std::path::Path;
-use std::str::FromStr;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// Until the program ends, like those that it was built with.
 type Loaded = &'static dyn Gait;
-
-/// A number that is set for this run.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Setting {
-    /// As in `links.thigh.mass`.
-    pub name: String,
-    pub value: f64,
-}
-
-impl FromStr for Setting {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Setting, String> {
-        let (name, number) = text.split_once('=').ok_or("write NAME=NUMBER, for example links.thigh.mass=1.2")?;
-        match number.trim().parse::<f64>() {
-            Ok(value) if value.is_finite() => Ok(Setting { name: name.trim().into(), value }),
-            _ => Err(format!("`{number}` is not a number; write for example links.thigh.mass=1.2")),
-        }
-    }
-}
 
 /// A gait that can be asked for.
 struct Choice {
@@ -60,14 +39,14 @@ fn choices() -> &'static [Choice] {
     CHOICES.get().map_or(&[], Vec::as_slice)
 }
 
-/// The robot of this folder if one is given, else those of the build or of `model-spec/`; with these numbers.
+/// The robot of this folder if one is given, else those of the build or of `model-spec/`; with these changes.
 ///
 /// # Errors
 /// If the folder has no robot, or its files have mistakes.
-pub fn choose(folder: Option<&Path>, settings: &[Setting]) -> anyhow::Result<()> {
+pub fn choose(folder: Option<&Path>, changes: &Changes) -> anyhow::Result<()> {
     let chosen = match folder {
-        Some(folder) => of_folder(folder, settings)?,
-        None => here(settings),
+        Some(folder) => of_folder(folder, changes)?,
+        None => here(changes),
     };
     CHOICES.get_or_init(|| chosen);
     Ok(())
@@ -79,14 +58,14 @@ pub fn choose_built() {
     CHOICES.get_or_init(|| built::gaits().iter().map(choice).collect());
 }
 
-fn of_folder(folder: &Path, settings: &[Setting]) -> anyhow::Result<Vec<Choice>> {
+fn of_folder(folder: &Path, changes: &Changes) -> anyhow::Result<Vec<Choice>> {
     let files = RobotFiles::read(folder).map_err(|why| anyhow!("{why}"))?;
-    let robot = read(Ok(RobotFiles { module: String::new(), ..files }), settings).map_err(|why| anyhow!("{why}"))?;
+    let robot = read(Ok(RobotFiles { module: String::new(), ..files }), changes).map_err(|why| anyhow!("{why}"))?;
     let origin = Origin::Files(Arc::new(Ok(robot.clone())));
     Ok(robot.gaits().into_iter().map(|key| Choice::new(key.leak(), origin.clone())).collect())
 }
 
-fn here(settings: &[Setting]) -> Vec<Choice> {
+fn here(changes: &Changes) -> Vec<Choice> {
     let changed = built::changed();
     let of_build = built::gaits().iter().map(|gait| built::module(gait.description().key).to_string());
     let mut modules: Vec<String> = of_build.chain(changed.iter().map(|file| file.module.clone())).collect();
@@ -97,12 +76,12 @@ fn here(settings: &[Setting]) -> Vec<Choice> {
             built::gaits().iter().copied().filter(|g| built::module(g.description().key) == module).collect();
         let files = match changed.iter().any(|file| file.module == module) {
             true => built::files_of(&module),
-            false if settings.is_empty() => {
+            false if changes.is_empty() => {
                 return built.iter().map(|g| Choice::new(g.description().key, Origin::Built(*g))).collect();
             }
             false => Ok(of_build_files(&module, &built)),
         };
-        let robot = read(files, settings);
+        let robot = read(files, changes);
         let keys: Vec<&str> = match &robot {
             Ok(robot) => robot.gaits().into_iter().map(|key| &*key.leak()).collect(),
             // Who asks for one of these is told what is wrong.
@@ -126,14 +105,12 @@ fn of_build_files(module: &str, gaits: &[Loaded]) -> RobotFiles {
     }
 }
 
-fn read(files: Result<RobotFiles, String>, settings: &[Setting]) -> Result<Robot, String> {
+fn read(files: Result<RobotFiles, String>, changes: &Changes) -> Result<Robot, String> {
     // What is wrong with the files themselves is said before what is set.
     let robot = files.and_then(|files| Robot::new(files).map_err(|why| why.to_string()))?;
     let mut files = robot.files().clone();
-    for Setting { name, value } in settings {
-        files.set(name, *value)?;
-    }
-    Robot::new(files).map_err(|why| format!("with the numbers that are set, the robot is none:\n{why}"))
+    changes.apply(&mut files)?;
+    Robot::new(files).map_err(|why| format!("with what is asked for, the robot is none:\n{why}"))
 }
 
 impl Choice {

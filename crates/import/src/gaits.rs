@@ -1,46 +1,103 @@
-//! Gaits to begin with. What is written is tried against the specification's own checks, and only what passes is kept.
+//! Gaits to begin with: those that legs like these have. What is written is tried against the specification's own checks, and only
+//! what passes is kept.
 
 use super::robot::{Leg, PITCH, Robot};
 use super::symmetry::Arrangement;
 use super::write::number;
 use piaffe_codegen::spec::{RobotFile, parse_gait};
 
-/// Files of gaits that build.
+/// A gait that legs like these have; whether these have it, a [trial](super::trial) tells.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Candidate {
+    pub name: String,
+    /// What it is, a sentence or two.
+    pub words: String,
+    /// The same with less and less clearance.
+    pub variants: [Variant; CLEARANCES.len()],
+    /// Of a gait that flies: the one that stands alike and never does.
+    pub grounded: Option<String>,
+}
+
+/// A gait file with assumed limits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variant {
+    /// Of swing feet, m.
+    pub clearance: f64,
+    text: String,
+}
+
+impl Candidate {
+    /// The file of a variant, with these lines about it.
+    pub fn file(&self, variant: &Variant, lines: &[String]) -> String {
+        let comments: String = lines.iter().map(|line| format!("# {line}\n")).collect();
+        format!("#:schema ../../schema/gait.schema.json\n# {}\n{comments}{}", self.words, variant.text)
+    }
+}
+
+/// Candidates whose files build.
 pub struct Gaits {
-    /// Name and text.
-    pub files: Vec<(String, String)>,
+    pub candidates: Vec<Candidate>,
     /// Why others are not there, a sentence each.
     pub notes: Vec<String>,
 }
 
-/// A gait to be tried.
+/// A way to use the legs.
 struct Plan {
     name: &'static str,
     words: &'static str,
     /// Indices of the legs of the two virtual legs.
     virtual_legs: [Vec<usize>; 2],
     pitches: bool,
+    flights: Option<Flights>,
 }
 
-pub fn write(robot: &Robot, arrangement: &Arrangement, file: &RobotFile) -> Gaits {
-    let mut gaits = Gaits { files: Vec::new(), notes: Vec::new() };
+/// Of a gait that flies.
+#[derive(Clone, Copy)]
+struct Flights {
+    /// The gait that stands alike and never flies.
+    grounded: &'static str,
+    /// Whether a flight follows each stance, or only that of virtual leg 2.
+    after_each: bool,
+}
+
+/// Heights that swing feet are asked to keep, as shares of a leg.
+const CLEARANCES: [f64; 3] = [0.02, 0.01, 0.005];
+
+pub fn find(robot: &Robot, arrangement: &Arrangement, file: &RobotFile) -> Gaits {
+    let mut gaits = Gaits { candidates: Vec::new(), notes: Vec::new() };
     for plan in plans(robot, arrangement) {
         let name = format!("{}.toml", plan.name);
         let mut refused = String::new();
-        let mut halves = ["mirrored", "distinct"].into_iter().map(|halves| text(robot, &plan, halves));
-        let built = halves.find(|text| match parse_gait(&name, text, file) {
-            Ok(_) => true,
-            Err(mistakes) => {
-                refused = mistakes.first().map(|m| m.title.clone()).unwrap_or_default();
-                false
+        let built = ["mirrored", "distinct"].into_iter().find_map(|halves| {
+            let candidate = candidate(robot, &plan, halves);
+            match parse_gait(&name, &candidate.file(&candidate.variants[0], &[]), file) {
+                Ok(_) => Some(candidate),
+                Err(mistakes) => {
+                    refused = mistakes.first().map(|m| m.title.clone()).unwrap_or_default();
+                    None
+                }
             }
         });
         match built {
-            Some(text) => gaits.files.push((name, text)),
+            Some(candidate) => gaits.candidates.push(candidate),
+            None if plan.flights.is_some() => {}
             None => gaits.notes.push(format!("no {}: {refused}", plan.name)),
         }
     }
     gaits
+}
+
+fn candidate(robot: &Robot, plan: &Plan, halves: &str) -> Candidate {
+    let variant = |share: f64| {
+        let clearance = share * robot.reach();
+        Variant { clearance, text: text(robot, plan, halves, clearance) }
+    };
+    Candidate {
+        name: plan.name.into(),
+        words: plan.words.into(),
+        variants: CLEARANCES.map(variant),
+        grounded: plan.flights.map(|flights| flights.grounded.to_string()),
+    }
 }
 
 /// In the order in which a person asks for them.
@@ -48,32 +105,59 @@ fn plans(robot: &Robot, arrangement: &Arrangement) -> Vec<Plan> {
     let pairs = &arrangement.pairs;
     // Every leg moves with those diagonal to it: left and right alternate, and so do pairs.
     let diagonal = |group: usize| pairs.iter().enumerate().map(|(k, pair)| pair[(k + group) % 2]).collect::<Vec<_>>();
-    let level = |name, words| Plan { name, words, virtual_legs: [diagonal(0), diagonal(1)], pitches: false };
+    let alternating =
+        |name, pitches, words| Plan { name, words, virtual_legs: [diagonal(0), diagonal(1)], pitches, flights: None };
+    let after_each = |grounded| Some(Flights { grounded, after_each: true });
+    let after_last = |grounded| Some(Flights { grounded, after_each: false });
     match pairs.len() {
-        1 => vec![Plan {
-            name: "walk",
-            words: "Walking: one leg after the other; the platform pitches.",
-            virtual_legs: [diagonal(0), diagonal(1)],
-            pitches: true,
-        }],
+        1 => {
+            let walk = alternating("walk", true, "Walking: one leg after the other; the platform pitches.");
+            let run = alternating(
+                "run",
+                true,
+                "Running: flights between the stances of one leg and the other; the platform pitches.",
+            );
+            vec![walk, Plan { flights: after_each("walk"), ..run }]
+        }
         2 => {
-            let bound = Plan {
-                name: "bound",
-                words: "Bound without flight: the hind legs move together, and so do the fore legs; the platform pitches.",
+            let bounding = |name, words| Plan {
+                name,
+                words,
                 virtual_legs: [pairs[1].to_vec(), pairs[0].to_vec()],
                 pitches: true,
+                flights: None,
             };
-            let trot = level("trot", "Trot: the legs of a diagonal move together; the platform stays level.");
-            if arrangement.alike { vec![trot, bound] } else { vec![bound] }
+            let bound = bounding(
+                "bound",
+                "Bound without flight: the hind legs move together, and so do the fore legs; the platform pitches.",
+            );
+            let flying = bounding(
+                "running_bound",
+                "Bound with a flight from the fore legs to the hind legs: each pair moves together; the platform pitches.",
+            );
+            let flying = Plan { flights: after_last("bound"), ..flying };
+            if !arrangement.alike {
+                return vec![bound, flying];
+            }
+            let trot =
+                alternating("trot", false, "Trot: the legs of a diagonal move together; the platform stays level.");
+            let running = alternating(
+                "running_trot",
+                false,
+                "Running trot: the legs of a diagonal move together, with flights in between; the platform stays level.",
+            );
+            vec![trot, Plan { flights: after_each("trot"), ..running }, bound, flying]
         }
-        _ if !robot.legs.is_empty() && arrangement.alike => {
-            vec![level("tripod", "Legs alternate from pair to pair and from left to right; the platform stays level.")]
-        }
+        _ if !robot.legs.is_empty() && arrangement.alike => vec![alternating(
+            "tripod",
+            false,
+            "Legs alternate from pair to pair and from left to right; the platform stays level.",
+        )],
         _ => Vec::new(),
     }
 }
 
-fn text(robot: &Robot, plan: &Plan, half_steps: &str) -> String {
+fn text(robot: &Robot, plan: &Plan, halves: &str, clearance: f64) -> String {
     let names = |legs: &[usize]| {
         let quoted: Vec<String> = legs.iter().map(|k| format!("\"{}\"", robot.legs[*k].name)).collect();
         quoted.join(", ")
@@ -86,23 +170,43 @@ fn text(robot: &Robot, plan: &Plan, half_steps: &str) -> String {
     };
     // What a robot of this size and weight can do without being put to the test: limits in its natural units.
     let beat = (robot.reach() / 9.81).sqrt();
-    let [shortest, longest] = [round(0.25 * beat), round(10.0 * beat)];
+    let duration = |shortest: f64, longest: f64| format!("[{}, {}]", round(shortest * beat), round(longest * beat));
+    let (phases, half_steps) = match plan.flights {
+        None => (
+            format!("half_steps = \"{halves}\"\n"),
+            format!("half_step_duration = {}  # s, √(leg / gravity) is {}\n", duration(0.25, 10.0), round(beat)),
+        ),
+        Some(flights) => (phases(halves, flights, &duration(0.25, 10.0), &duration(0.1, 3.0)), String::new()),
+    };
     format!(
-        "#:schema ../../schema/gait.schema.json\n# {}\n\nvirtual_legs = [[{}], [{}]]\n{}platform = {{ moves = [\"x\", \"y\"], rotates = \"{rotates}\" }}\n\
-         unactuated = \"{unactuated}\"\nhalf_steps = \"{half_steps}\"\n\n\
+        "\nvirtual_legs = [[{}], [{}]]\n{}platform = {{ moves = [\"x\", \"y\"], rotates = \"{rotates}\" }}\n\
+         unactuated = \"{unactuated}\"\n{phases}\n\
          [limits]                                  # all assumed: shares of weight and length of the legs\n\
          friction = 0.6                            # tangential / vertical force\n\
          min_vertical_force = {}  # N, 5 % of the weight\n\
-         swing_clearance = {}  # m, 2 % of a leg\n\
-         half_step_duration = [{shortest}, {longest}]  # s, √(leg / gravity) is {}\n",
-        plan.words,
+         swing_clearance = {}  # m, {} % of a leg\n\
+         {half_steps}",
         names(first),
         names(second),
         locked(robot),
         round(0.05 * robot.weight()),
-        round(0.02 * robot.reach()),
-        round(beat),
+        round(clearance),
+        round(100.0 * clearance / robot.reach()),
     )
+}
+
+/// Half a cycle where half steps mirror each other, else all of it.
+fn phases(halves: &str, flights: Flights, stance: &str, flight: &str) -> String {
+    let phase =
+        |stance: &str, duration: &str| format!("\n[[phases]]\nstance = [{stance}]\nduration = {duration}  # s\n");
+    let [first, second] = ["leg1", "leg2"].map(|leg| phase(&format!("\"{leg}\""), stance));
+    let flying = phase("", flight);
+    let (list, then) = match (halves, flights.after_each) {
+        ("mirrored", _) => (first + &flying, "mirrored"),
+        (_, true) => (first + &flying + &second + &flying, "repeat"),
+        (_, false) => (first + &second + &flying, "repeat"),
+    };
+    format!("{list}\n[cycle]\nthen = \"{then}\"\n")
 }
 
 /// Three digits: nobody means more by an assumed limit.

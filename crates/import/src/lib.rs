@@ -4,7 +4,7 @@
 //! `urdf` and `mjcf` read a `model`: links on joints. `tree` makes of it the bodies that move against each
 //! other; `limbs` decides which chains are legs and holds the rest still; `foot` finds where they touch the ground. `robot`
 //! has what the specification needs, `symmetry` makes alike what is meant to be, `write` and `gaits` put it into words, and the
-//! specification's own checks have the last one. URDF's axes are x forward, y to the left, z up, unless a person says
+//! specification's own checks have the last one. A `trial` then finds out which gaits the robot can do. URDF's axes are x forward, y to the left, z up, unless a person says
 //! otherwise; the specification's are x forward, y up, z to the right.
 
 #![forbid(unsafe_code)]
@@ -21,6 +21,7 @@ mod robot;
 pub mod standing;
 mod symmetry;
 mod tree;
+mod trial;
 mod urdf;
 mod words;
 mod write;
@@ -28,6 +29,8 @@ mod xml;
 
 pub use axes::Direction;
 pub use fault::{Fault, ImportError, Kind, Place};
+pub use gaits::{Candidate, Variant};
+pub use trial::Found;
 
 use fault::Faults;
 use model::Model;
@@ -166,7 +169,7 @@ impl FromStr for Stops {
 }
 
 /// A specification made of a file.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Import {
     /// The robot's name as a folder's name.
     pub folder: String,
@@ -174,6 +177,10 @@ pub struct Import {
     pub robot: String,
     /// Gaits to begin with: name of the file and its text. At least one.
     pub gaits: Vec<(String, String)>,
+    /// Gaits that legs like these have; [`Import::tried`] makes of them those that the robot can do.
+    pub candidates: Vec<Candidate>,
+    /// What a trial found, a gait each of its own file.
+    pub found: Vec<Found>,
     /// What a person must know of it, a sentence each.
     pub notes: Vec<String>,
 }
@@ -216,8 +223,8 @@ pub fn import(text: &str, options: &Options) -> Result<Import, ImportError> {
     notes.extend(arrangement.differences.iter().cloned());
     let text = write::robot(&robot, model.format, &notes);
     let file = parse_robot("robot.toml", &text).map_err(|mistakes| refused(&mistakes))?;
-    let gaits = gaits::write(&robot, &arrangement, &file);
-    if gaits.files.is_empty() {
+    let gaits = gaits::find(&robot, &arrangement, &file);
+    if gaits.candidates.is_empty() {
         let mut why = arrangement.differences.clone();
         why.extend(gaits.notes);
         let what = format!("no gait fits these legs: {}", why.join("; "));
@@ -228,7 +235,9 @@ pub fn import(text: &str, options: &Options) -> Result<Import, ImportError> {
     }
     notes.extend(gaits.notes);
     notes.push("the limits of the gaits (friction, clearance, forces, durations) are assumed".into());
-    Ok(Import { folder: write::folder(&robot.name), robot: text, gaits: gaits.files, notes })
+    let untried = trial::untried(&gaits.candidates);
+    let folder = write::folder(&robot.name);
+    Ok(Import { folder, robot: text, gaits: untried, candidates: gaits.candidates, found: Vec::new(), notes })
 }
 
 /// Reads a file of any format that is known.
