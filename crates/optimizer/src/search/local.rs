@@ -15,6 +15,8 @@ const FEASIBILITY: f64 = 1e-8;
 const DENSE: f64 = 1e-7;
 /// Change of an active row between nodes at which it does (see `look`).
 const SETTLED: f64 = 1e-8;
+/// Share of the tolerance that is asked for once rows between nodes are known.
+const FIRM: f64 = 1e-2;
 /// Rounds after which a mesh must do on which they go on changing.
 const PATIENCE: usize = 5;
 const ROUNDS: usize = 20;
@@ -255,8 +257,21 @@ fn look(cycle: &mut Cycle, solution: &Solution) -> Result<(f64, f64), Undefined>
 fn settle(cycle: &mut Cycle, start: &[f64], first_step_limit: f64, observe: Observer) -> Settled {
     let options = options(cycle);
     between_nodes(cycle, start, |cycle, theta, round| {
-        let first_step_limit = if round == 0 { first_step_limit } else { f64::INFINITY };
-        sqp::minimize(cycle, theta, &Options { first_step_limit, ..options.clone() }, observe)
+        if round == 0 {
+            return sqp::minimize(cycle, theta, &Options { first_step_limit, ..options.clone() }, observe);
+        }
+        // With rows that have moved a little the conditions may hold to the tolerance at the old place still, though not as well
+        // with any other multipliers; a step further they do.
+        let firm = Options { tolerance: FIRM * options.tolerance, ..options.clone() };
+        let mut solution = sqp::minimize(cycle, theta, &firm, observe);
+        let kkt = &solution.kkt;
+        if solution.status == Status::NoProgress
+            && kkt.optimality() <= options.tolerance
+            && kkt.violation <= options.feasibility
+        {
+            solution.status = Status::Optimal;
+        }
+        solution
     })
 }
 
