@@ -115,7 +115,7 @@ fn search(gait: &dyn Gait, outcome: &mut Outcome) {
         if ended {
             break;
         }
-        let speed = two_digits(share * natural);
+        let speed = rounded(share * natural, 2);
         let starts = Some(if known.is_empty() { STARTS } else { STARTS_BESIDE });
         let task = Task { gait, criterion: Criterion::Torque, speed };
         let result = task.search(&Settings { starts, ..Settings::default() }, &known, &|_| {});
@@ -137,8 +137,9 @@ fn obstacle(result: &GaitResult) -> String {
     if names.is_empty() { result.message.clone() } else { format!("in the way are {}", names.join(", ")) }
 }
 
-fn two_digits(x: f64) -> f64 {
-    format!("{x:.1e}").parse().unwrap_or(x)
+/// To so many digits.
+fn rounded(x: f64, digits: usize) -> f64 {
+    format!("{x:.*e}", digits - 1).parse().unwrap_or(x)
 }
 
 fn verdict(outcome: &Outcome, all: &[Outcome]) -> Verdict {
@@ -200,7 +201,7 @@ impl Outcome<'_> {
         let mut missed: Vec<String> = Vec::new();
         for (speed, cost) in &self.found {
             match cost {
-                Some(cost) => reached.push(format!("{cost:.4} at {speed} m/s")),
+                Some(cost) => reached.push(format!("{} at {speed} m/s", rounded(*cost, 5))),
                 None => missed.push(format!("{speed}")),
             }
         }
