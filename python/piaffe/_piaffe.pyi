@@ -98,6 +98,8 @@ class Robot:
         """Derives a gait: 20 to 80 ms for those that are shipped."""
     def set(self, numbers: Mapping[str, float]) -> Robot:
         """The same robot with other numbers, by the keys that lead to them: `{"links.thigh.mass": 1.2}`."""
+    def loaded(self, mass: float, at: tuple[float, float, float]) -> Robot:
+        """The robot with a point mass (kg) on its platform, at a point in the frame of the legs' mounts (forward, up, right), m."""
 
 @final
 class Gait:

@@ -5,7 +5,7 @@ use crate::work::{Stop, apart, work};
 use piaffe::import::{Direction, FootPoint, Lock, Options, Setting, Stops, import};
 use piaffe::interpreter::{Interpreted, Unloadable};
 use piaffe::model::Gait as _;
-use piaffe_codegen::{RobotFiles, SpecFile};
+use piaffe_codegen::{Changes, Load, RobotFiles, SpecFile};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use pyo3::types::PyMapping;
@@ -219,6 +219,15 @@ impl Robot {
     fn set(&self, numbers: BTreeMap<String, f64>) -> PyResult<Robot> {
         let numbers = numbers.iter().map(|(name, value)| (name.as_str(), *value));
         Ok(Robot { robot: self.robot.with_all(numbers).map_err(unloadable)?, notes: self.notes.clone() })
+    }
+
+    /// The robot with a point mass (kg) on its platform, at a point in the frame of the legs' mounts (forward, up, right), m.
+    fn loaded(&self, mass: f64, at: [f64; 3]) -> PyResult<Robot> {
+        if !(mass.is_finite() && mass > 0.0 && at.iter().all(|x| x.is_finite())) {
+            return Err(Error::new_err(format!("a load of {mass} kg at {at:?}: give a positive mass and a point")));
+        }
+        let changes = Changes { loads: vec![Load { mass, at }], ..Changes::default() };
+        Ok(Robot { robot: self.robot.changed(&changes).map_err(unloadable)?, notes: self.notes.clone() })
     }
 
     fn __getnewargs__(&self) -> (&str, BTreeMap<String, &str>, Vec<String>) {

@@ -70,6 +70,18 @@ def test_numbers_are_set_together(quadruped: piaffe.Robot) -> None:
         quadruped.set({low: 3.0, high: 2.0})
 
 
+def test_a_load_is_a_part_of_the_platform(quadruped: piaffe.Robot) -> None:
+    loaded = quadruped.loaded(1.0, (0.0, 0.0, 0.0))
+    assert loaded.numbers["links.platform.mass"] == pytest.approx(quadruped.numbers["links.platform.mass"] + 1.0)
+    aside = quadruped.loaded(1.0, (0.1, 0.0, 0.0))
+    assert aside.numbers["links.platform.com.x"] == pytest.approx(0.1 / 7.65)
+    with pytest.raises(piaffe.Error, match="positive mass"):
+        quadruped.loaded(-1.0, (0.0, 0.0, 0.0))
+    # What a file leaves out can be set all the same.
+    high = quadruped.set({"limits.min_platform_height": 0.2})
+    assert "min_platform_height = 0.2" in high.files["gaits/trot.toml"]
+
+
 def test_a_robot_of_another_format_walks(tmp_path: Path) -> None:
     robot = piaffe.Robot.from_urdf(urdf(tmp_path, 60.0))
     assert robot.name == "biped" and any("assumed" in note for note in robot.notes)

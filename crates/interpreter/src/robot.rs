@@ -3,7 +3,7 @@
 use super::gait::{Interpreted, Kernels};
 use super::tape::Unrunnable;
 use piaffe_codegen::spec;
-use piaffe_codegen::{RobotFiles, SpecFile, Specified, specified};
+use piaffe_codegen::{Changes, RobotFiles, SpecFile, Specified, specified};
 use piaffe_model::{Description, Specification};
 use std::path::Path;
 
@@ -66,6 +66,16 @@ impl Robot {
         };
         let wrong: Vec<String> = numbers.into_iter().filter_map(&mut set).collect();
         if wrong.is_empty() { Robot::new(files) } else { Err(Unloadable::Specification(wrong.join("\n"))) }
+    }
+
+    /// The robot with what is asked for beside its files: limits, stronger motors, a load.
+    ///
+    /// # Errors
+    /// What is not there to be changed; or what is wrong with the robot that comes of it.
+    pub fn changed(&self, changes: &Changes) -> Result<Robot, Unloadable> {
+        let mut files = self.files.clone();
+        changes.apply(&mut files).map_err(Unloadable::Specification)?;
+        Robot::new(files)
     }
 
     /// The gait that a result carries with it, under its name there.
