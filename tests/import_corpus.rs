@@ -95,6 +95,30 @@ fn robots_of_the_world_walk() {
     assert!(!missing.is_empty() || go >= 35, "{go} of {imported}");
 }
 
+/// Of each kind one, by the end of its path, and a gait that its import must find.
+const GO: &[(&str, &str)] = &[
+    ("solo_description/robots/solo12.urdf", "trot"),
+    ("bolt_description/robots/bolt.urdf", "walk"),
+    ("anymal_b_simple_description/robots/anymal.urdf", "bound"),
+    ("robot_model/go2/go2.xml", "trot"),
+];
+
+#[test]
+fn robots_of_the_world_go() {
+    let (files, _) = corpus();
+    for (end, gait) in GO {
+        let Some(file) = files.iter().find(|file| file.ends_with(end)) else {
+            eprintln!("skipped: {end} is not there");
+            continue;
+        };
+        let made =
+            import(&std::fs::read_to_string(file).unwrap(), &given(options(&file.display().to_string()))).unwrap();
+        let made = made.tried(&|candidate| candidate != "bound" || *gait == "bound");
+        let found = made.found.iter().find(|found| found.gait == *gait);
+        assert!(found.is_some_and(|found| found.speeds.len() >= 2), "{end}: {:?} {:?}", made.found, made.notes);
+    }
+}
+
 #[test]
 fn robots_of_the_world_import_or_are_refused_for_a_reason() {
     let (files, missing) = corpus();
