@@ -1,5 +1,7 @@
 //! Every derivative that the optimizer uses, against central differences of the same path.
 
+#[path = "friction/gaits.rs"]
+mod rubbing;
 #[path = "gaits/walking.rs"]
 mod walking;
 
@@ -115,6 +117,8 @@ fn check(gait: &dyn Gait, criterion: Criterion, seed: u64) {
 fn gradients_agree_with_differences_for_every_gait_criterion_and_order() {
     for gait in GAITS {
         for criterion in Criterion::ALL {
+            check(&rubbing::smooth(*gait), criterion, 4);
+            (4..6).for_each(|seed| check(&rubbing::dry(*gait), criterion, seed));
             if gait.description().flies() {
                 check(*gait, criterion, 4);
                 continue;
@@ -124,6 +128,7 @@ fn gradients_agree_with_differences_for_every_gait_criterion_and_order() {
             }
             check(&Altered::of_order(*gait, 6), criterion, 0);
             check(&Altered::at_real_legs(*gait).unwrap(), criterion, 0);
+            check(&Altered::at_real_legs(&rubbing::dry(*gait)).unwrap(), criterion, 0);
         }
     }
 }
@@ -155,7 +160,11 @@ fn all_joints_move(gait: &dyn Gait, theta: &[f64]) -> bool {
 #[test]
 fn the_hessian_of_the_lagrangian_agrees_with_differences_of_its_gradient() {
     let at_real_legs: Vec<_> = walking().map(|gait| Altered::at_real_legs(*gait).unwrap()).collect();
-    let gaits = GAITS.iter().copied().chain(at_real_legs.iter().map(|g| g as &dyn Gait));
+    let rub: Vec<_> = GAITS.iter().flat_map(|gait| [rubbing::smooth(*gait), rubbing::dry(*gait)]).collect();
+    let all_rub: Vec<_> = rub.iter().filter(|gait| !gait.description().flies()).collect();
+    let rub_at_real_legs: Vec<_> = all_rub.into_iter().map(|gait| Altered::at_real_legs(gait).unwrap()).collect();
+    let altered = at_real_legs.iter().chain(&rub).chain(&rub_at_real_legs);
+    let gaits = GAITS.iter().copied().chain(altered.map(|g| g as &dyn Gait));
     for (gait, held) in gaits.flat_map(|gait| [(gait, false), (gait, true)]) {
         for criterion in Criterion::ALL {
             let d = gait.description();

@@ -16,6 +16,7 @@ mod swing;
 pub use impact::ImpactConstraints;
 pub use limits::{JointLimits, Limits};
 
+use crate::friction::Friction;
 use crate::instant::Quantities;
 use crate::swing::swings;
 use piaffe_model::{Description, Limit};
@@ -44,6 +45,8 @@ pub enum Form<T = f64> {
     Cone { normal: usize, factor: T, tangential: Vec<usize> },
     /// A limit on one of the real legs.
     Share(Share<T>),
+    /// `offset + by_torque · Γ + by_rate · q̇`, where Γ is that of a motor with friction to overcome; quantities with these factors.
+    Motor { offset: T, torque: (usize, T), rate: (usize, T), friction: Friction<T> },
 }
 
 /// All path constraints of phase `k` of a gait.
@@ -88,6 +91,10 @@ impl<T: Scalar> PathConstraint<T> {
             Form::Linear { offset, terms } => *offset + terms.iter().fold(T::zero(), |sum, (q, c)| sum + *c * y[*q]),
             Form::Cone { normal, factor, tangential } => *factor * y[*normal] - norm(y, tangential),
             Form::Share(share) => share.value(y),
+            Form::Motor { offset, torque, rate, friction } => {
+                let motor = y[torque.0] + friction.torque(y[rate.0]);
+                *offset + rate.1 * y[rate.0] + torque.1 * motor
+            }
         };
         value / T::from(self.unit)
     }
@@ -107,13 +114,18 @@ impl PathConstraint {
                 }
             }
             Form::Share(share) => share.partials(y, |q, partial| add(q, partial / self.unit)),
+            // Where the rate changes its sign the limit jumps; it has no slope there.
+            Form::Motor { torque, rate, friction, .. } => {
+                add(torque.0, torque.1 / self.unit);
+                add(rate.0, (rate.1 + torque.1 * friction.damping) / self.unit);
+            }
         }
     }
 
     /// Calls `add(quantity, quantity, second derivative)`.
     pub fn curvature(&self, y: &[f64], mut add: impl FnMut(usize, usize, f64)) {
         let tangential = match &self.form {
-            Form::Linear { .. } => return,
+            Form::Linear { .. } | Form::Motor { .. } => return,
             Form::Share(share) => return share.curvature(y, |a, b, second| add(a, b, second / self.unit)),
             Form::Cone { tangential, .. } => tangential,
         };

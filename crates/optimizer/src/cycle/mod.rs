@@ -443,6 +443,13 @@ impl<'a> Cycle<'a> {
         p.cost.partials.iter().map(move |(node, quantity, partial)| (*node, *quantity, share * partial))
     }
 
+    /// Derivatives of the objective in the dry friction of joints, in a half step, where torques and rates stay: joint, derivative.
+    pub fn objective_by_coulomb(&self, phase: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let p = &self.phases[phase];
+        let share = p.duration() * self.per_work();
+        p.cost.drives.iter().zip(&p.cost.by_coulomb).map(move |(drive, by)| (drive.joint, share * by))
+    }
+
     /// The criterion per metre of travel, where the objective is 1 and the mean speed the one asked.
     pub fn criterion_per_objective(&self) -> f64 {
         self.units.integrand(self.criterion) / self.speed.abs()

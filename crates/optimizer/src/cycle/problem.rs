@@ -480,8 +480,10 @@ impl Problem for Cycle<'_> {
         p.project(p.instants.gradient(node, y.rate(joint)), 1.0, row);
         // Of all joints that this one stands for.
         let drives = Drive::all(self.description(), p.mode);
-        let torques =
-            drives.iter().filter(|drive| drive.rate() == y.rate(joint)).map(|d| d.torque(p.linearized(node)).abs());
+        let torques = drives
+            .iter()
+            .filter(|drive| drive.joint == joint)
+            .map(|drive| drive.torque(p.linearized(node), 0.0).abs().max(drive.coulomb()));
         p.mesh.weights[node] * p.duration() * torques.sum::<f64>() * self.per_work()
     }
 
