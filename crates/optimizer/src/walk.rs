@@ -56,7 +56,7 @@ pub struct Moment {
     pub q: Vec<f64>,
     pub qd: Vec<f64>,
     pub qdd: Vec<f64>,
-    /// Γ of every joint of the virtual legs, N·m.
+    /// Γ of every joint's motor of the virtual legs, friction overcome, N·m.
     pub torque: Vec<f64>,
     /// Reaction on the virtual leg in support, N; in flight zero.
     pub force: Point,

@@ -66,11 +66,13 @@ fn rest(mesh: &Mesh, instants: &Instants, integral: &mut Integral) {
         for (node, weight) in mesh.weights.iter().copied().enumerate() {
             let (drive, y) = (&integral.held[k], instants.row(node));
             let torque = drive.torque(y, 0.0);
-            integral.value += weight * torque.clamp(-c, c) * y[drive.rate()];
-            integral.partials.push((node, drive.rate(), weight * torque.clamp(-c, c)));
             if torque.abs() < c {
-                let partials = drive.torque_partials(y).into_iter();
-                integral.seconds.extend(partials.map(|(quantity, by)| (node, quantity, drive.rate(), weight * by)));
+                integral.value += weight * drive.power(y, 0.0);
+                drive.power_curvature(y, |a, b, second| integral.seconds.push((node, a, b, weight * second)));
+                integral.add(node, &drive.power_partials(y, 0.0), weight, 0.0);
+            } else {
+                integral.value += weight * c.copysign(torque) * y[drive.rate()];
+                integral.partials.push((node, drive.rate(), weight * c.copysign(torque)));
             }
         }
     }
