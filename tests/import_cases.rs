@@ -516,6 +516,7 @@ fn friction_is_taken_over_and_said() {
     let sum: f64 = joints(builds(&one)).iter().map(|joint| joint.friction.damping).sum();
     assert!((sum - 0.04).abs() < 1e-12, "{sum}");
 
-    let drives = import(&given(&|_| r#"<dynamics damping="-0.1"/>"#.into()), &Options::default()).expect_err("drives").0;
+    let drives =
+        import(&given(&|_| r#"<dynamics damping="-0.1"/>"#.into()), &Options::default()).expect_err("drives").0;
     assert!(drives.len() == limits && drives.iter().all(|f| f.what.contains("less than none") && !f.remedy.is_empty()));
 }

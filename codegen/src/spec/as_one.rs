@@ -275,7 +275,13 @@ mod tests {
                 loaded_speed: 1.0,
                 rotor_inertia: 0.0,
             };
-            let joint = Joint { name: "joint".into(), axis: *axis, range: [-1.0, 1.0], friction: Friction::default(), actuator };
+            let joint = Joint {
+                name: "joint".into(),
+                axis: *axis,
+                range: [-1.0, 1.0],
+                friction: Friction::default(),
+                actuator,
+            };
             let (name, inertia) = ("link".into(), [[0.0; 3]; 3]);
             let link = Link { name, mass: 1.0, end: *end, com: [0.0; 3], inertia, locked: Vec::new() };
             Segment { joint, link }

@@ -37,11 +37,7 @@ impl Friction {
 
 impl<T: Scalar> Friction<T> {
     /// Of a joint, if it has some; `one` makes a scalar of a number of a description.
-    pub fn read(
-        d: &Description,
-        joint: usize,
-        one: impl Fn(&dyn Fn(&Description) -> f64) -> T,
-    ) -> Option<Friction<T>> {
+    pub fn read(d: &Description, joint: usize, one: impl Fn(&dyn Fn(&Description) -> f64) -> T) -> Option<Friction<T>> {
         d.joints[joint].has_friction().then(|| Friction {
             damping: one(&|d| d.joints[joint].damping),
             coulomb: one(&|d| d.joints[joint].coulomb),

@@ -102,12 +102,8 @@ pub fn evaluate(
         tally.note(Constraint::Touchdown, -landing.abs() / units.leg, phase.duration);
     }
     let spacing = phase.duration / last as f64;
-    let mut totals = Totals {
-        torque: integral(&squares, spacing),
-        energy: 0.0,
-        travel: platform[last] - platform[0],
-        peaks,
-    };
+    let mut totals =
+        Totals { torque: integral(&squares, spacing), energy: 0.0, travel: platform[last] - platform[0], peaks };
     for (j, joint) in description.joints.iter().enumerate() {
         let [torques, powers, rates] = [&torques, &powers, &rates].map(|list| &list[j * points..][..points]);
         if joint.coulomb == 0.0 {

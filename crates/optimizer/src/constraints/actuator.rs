@@ -14,13 +14,11 @@ pub fn constraints<T: Scalar>(d: &Description, limits: &Limits<T>, y: &Quantitie
         let (torque, rate) = (y.torque(j), y.rate(j));
         let mut add = |limit, unit, offset, [by_rate, by_torque]: [T; 2]| {
             let form = match limits.friction {
-                Some(friction) => {
-                    Form::Motor { offset, torque: (torque, by_torque), rate: (rate, by_rate), friction }
-                }
+                Some(friction) => Form::Motor { offset, torque: (torque, by_torque), rate: (rate, by_rate), friction },
                 None if limit == Limit::Torque => Form::Linear { offset, terms: vec![(torque, by_torque)] },
                 None => Form::Linear { offset, terms: vec![(rate, by_rate), (torque, by_torque)] },
             };
-            list.push(PathConstraint { limit, of: joint.name.into(), form, unit, at_start: true });
+            list.push(PathConstraint { limit, of: joint.name.into(), form, unit, at_start: true, on_demand: false });
         };
         for sign in [1.0, -1.0] {
             add(Limit::Torque, joint.max_torque, limits.max_torque, [T::zero(), T::from(-sign)]);

@@ -5,6 +5,7 @@
 //! natural unit, so that 1e-6 means the same everywhere.
 
 mod actuator;
+mod going;
 mod ground;
 mod impact;
 mod limits;
@@ -34,6 +35,8 @@ pub struct PathConstraint<T = f64> {
     pub unit: f64,
     /// Whether it also is imposed at the first instant (a joint's range there is that of the last).
     pub at_start: bool,
+    /// Whether it is imposed only where somebody asks for it (`Cycle::keep_going`).
+    pub on_demand: bool,
 }
 
 /// The formula of a path constraint.
@@ -72,12 +75,25 @@ pub fn path_constraints_of<T: Scalar>(
     if mode.stance().is_some() {
         list.extend(sharing::constraints(description, limits, &y));
     }
+    list.extend(going::constraints(description, &y));
     list
 }
 
 impl<T: Scalar> PathConstraint<T> {
     fn linear(limit: Limit, unit: f64, offset: T, terms: Vec<(usize, T)>) -> PathConstraint<T> {
-        PathConstraint { limit, of: String::new(), form: Form::Linear { offset, terms }, unit, at_start: true }
+        PathConstraint {
+            limit,
+            of: String::new(),
+            form: Form::Linear { offset, terms },
+            unit,
+            at_start: true,
+            on_demand: false,
+        }
+    }
+
+    /// Whether it is imposed at this node of a phase.
+    pub fn is_imposed(&self, node: usize) -> bool {
+        !self.on_demand && (node > 0 || self.at_start)
     }
 
     fn of(self, what: impl Into<String>) -> PathConstraint<T> {

@@ -109,7 +109,7 @@ pub fn constraints<T: Scalar>(d: &Description, limits: &Limits<T>, y: &Quantitie
     for (member, offset) in leg.members.iter().zip(offsets(d)) {
         let mut add = |limit: Limit, of: String, unit: f64, joint: usize, formula: Of<T>| {
             let form = Form::Share(Share { quantities: quantities(d, y, joint), offset, weight, of: formula });
-            list.push(PathConstraint { limit, of, form, unit, at_start: true });
+            list.push(PathConstraint { limit, of, form, unit, at_start: true, on_demand: false });
         };
         let foot = || member.name.to_string();
         add(Limit::VerticalForceOfFoot, foot(), weight, 0, Of::Vertical(limits.min_vertical_force.scale(share)));

@@ -8,7 +8,7 @@
 //! either side the power is a quartic again. Where they meet it is the same on both, so that their motion does not matter either.
 
 use super::sides::Sides;
-use super::{Bend, Drive, Integral, Kink};
+use super::{Bend, Integral, Kink};
 use crate::flow::Mesh;
 use crate::instant::Instants;
 use crate::lgl::NODES;
@@ -20,7 +20,7 @@ pub fn integrate(mesh: &Mesh, instants: &Instants, integral: &mut Integral) {
     for k in 0..integral.drives.len() {
         for e in 0..mesh.elements {
             let node = |i: usize| e * (NODES - 1) + i;
-            let sides = sides(mesh, instants, &integral.drives[k], e);
+            let sides = sides(mesh, instants, integral, k, e);
             for side in &sides.parts {
                 let power: [f64; NODES] = from_fn(|i| integral.drives[k].power(instants.row(node(i)), side.sign));
                 let (weights, roots) = absolute_weights(mesh, &power, side.within);
@@ -40,7 +40,8 @@ pub fn integrate(mesh: &Mesh, instants: &Instants, integral: &mut Integral) {
             // Where the joint turns around, what friction takes bends: c |q̇|, counted with the sign that the power has there.
             for (turn, slope) in sides.turns {
                 let (drive, shape) = (&integral.drives[k], mesh.lobatto.values(turn));
-                let power: f64 = shape.iter().enumerate().map(|(i, l)| l * drive.power(instants.row(node(i)), 0.0)).sum();
+                let power: f64 =
+                    shape.iter().enumerate().map(|(i, l)| l * drive.power(instants.row(node(i)), 0.0)).sum();
                 let weight = 2.0 * share * drive.coulomb() * power.signum() / slope.abs();
                 integral.kinks.push(Kink { drive: k, bend: Bend::Rate, first: node(0), shape, weight, slope });
             }
@@ -49,13 +50,15 @@ pub fn integrate(mesh: &Mesh, instants: &Instants, integral: &mut Integral) {
     rest(mesh, instants, integral);
 }
 
-/// The parts of element `e` in which dry friction keeps its sign.
-pub(super) fn sides(mesh: &Mesh, instants: &Instants, drive: &Drive, e: usize) -> Sides {
+/// The parts of element `e` in which the dry friction of drive `k` keeps its sign.
+pub(super) fn sides(mesh: &Mesh, instants: &Instants, integral: &Integral, k: usize, e: usize) -> Sides {
+    let drive = &integral.drives[k];
     if drive.coulomb() == 0.0 {
         return Sides::none();
     }
     let rates = from_fn(|i| instants.value(e * (NODES - 1) + i, drive.rate()));
-    Sides::new(mesh, &rates, drive.at_rest())
+    let going = integral.going.iter().filter(|going| (going.joint, going.element) == (drive.joint, e));
+    Sides::new(mesh, &rates, drive.at_rest(), going.map(|going| going.sign).next())
 }
 
 /// Joints that are held still. To move one costs (|Γ| or c, whichever is more) per rate, and besides, in the direction in which the

@@ -32,6 +32,8 @@ pub struct Integral {
     pub drives: Vec<Drive>,
     /// Of joints that are held still, those with dry friction.
     pub held: Vec<Drive>,
+    /// Joints that do not turn around where they nearly do.
+    pub going: Vec<Going>,
 }
 
 impl Integral {
@@ -49,6 +51,7 @@ impl Integral {
             by_coulomb: vec![0.0; drives.len()],
             drives,
             held: Vec::new(),
+            going: Vec::new(),
         }
     }
 
@@ -77,6 +80,15 @@ pub struct Kink {
     pub weight: f64,
     /// Slope of the power, or of the rate, at the root, per element.
     pub slope: f64,
+}
+
+/// A joint that goes on the same way in an element.
+#[derive(Clone, Copy, Debug)]
+pub struct Going {
+    pub joint: usize,
+    pub element: usize,
+    /// Of its rate.
+    pub sign: f64,
 }
 
 /// What vanishes at a kink.

@@ -2,7 +2,7 @@
 
 use crate::flow::Mesh;
 use crate::lgl::NODES;
-use crate::polynomial::{Roots, evaluate, may_change_sign, roots};
+use crate::polynomial::{Roots, derivative, evaluate, may_change_sign, roots};
 use smallvec::SmallVec;
 
 /// A part of an element, and the sign of the rate there; 0 at rest.
@@ -29,7 +29,8 @@ impl Sides {
         Sides { parts: SmallVec::from_slice(&[whole]), turns: Roots::new(), rate: [0.0; NODES] }
     }
 
-    pub fn new(mesh: &Mesh, rates: &[f64; NODES], at_rest: f64) -> Sides {
+    /// A joint that is `going` one way does not turn where its rate is nearest to zero on the other side.
+    pub fn new(mesh: &Mesh, rates: &[f64; NODES], at_rest: f64, going: Option<f64>) -> Sides {
         if rates.iter().all(|rate| rate.abs() <= at_rest) {
             return Sides::none();
         }
@@ -38,13 +39,31 @@ impl Sides {
         if may_change_sign(&rate) {
             roots(&rate, &mut turns);
         }
+        if let Some(at) = going.and_then(|sign| nearest_halt(&rate, sign)) {
+            let (before, after) =
+                (turns.iter().rposition(|turn| turn.0 < at), turns.iter().position(|turn| turn.0 > at));
+            for turn in after.into_iter().chain(before) {
+                turns.remove(turn);
+            }
+        }
         let mut parts = SmallVec::new();
         let mut from = 0.0;
+        let undisturbed = going.unwrap_or(if evaluate(&rate, 0.5) >= 0.0 { 1.0 } else { -1.0 });
+        let mut sign = turns.first().map_or(undisturbed, |turn| -turn.1.signum());
         for to in turns.iter().map(|turn| turn.0).chain([1.0]) {
-            let sign = if evaluate(&rate, 0.5 * (from + to)) >= 0.0 { 1.0 } else { -1.0 };
             parts.push(Side { within: [from, to], sign });
-            from = to;
+            (from, sign) = (to, -sign);
         }
         Sides { parts, turns, rate }
     }
+}
+
+/// Where the rate of a joint that goes this way is on the other side of zero, and least so.
+fn nearest_halt(rate: &[f64; NODES], sign: f64) -> Option<f64> {
+    let (mut buffer, mut stationary) = ([0.0; NODES], Roots::new());
+    roots(derivative(rate, &mut buffer), &mut stationary);
+    let halts =
+        stationary.into_iter().filter(|(_, bend)| sign * bend > 0.0).map(|(at, _)| (at, sign * evaluate(rate, at)));
+    let beyond = halts.filter(|(_, value)| *value < 0.0);
+    beyond.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(at, _)| at)
 }

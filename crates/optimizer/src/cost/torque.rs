@@ -34,7 +34,7 @@ pub fn integrate(mesh: &Mesh, instants: &Instants, integral: &mut Integral) {
 /// Adds what dry friction adds for drive `k` in element `e`.
 fn dry(mesh: &Mesh, instants: &Instants, integral: &mut Integral, k: usize, e: usize) {
     let (lobatto, share) = (&mesh.lobatto, integral.drives[k].sharing / mesh.elements as f64);
-    let sides = sides(mesh, instants, &integral.drives[k], e);
+    let sides = sides(mesh, instants, integral, k, e);
     let node = |i: usize| e * (NODES - 1) + i;
     let c = integral.drives[k].coulomb();
     let torques: [f64; NODES] = from_fn(|i| integral.drives[k].torque(instants.row(node(i)), 0.0));

@@ -11,6 +11,7 @@
 
 mod crossing;
 mod dip;
+mod halt;
 mod hessian;
 mod phase;
 mod problem;
@@ -24,6 +25,7 @@ use crate::flow::Undefined;
 use crate::instant::Glance;
 use crate::lgl::NODES;
 use dip::Dip;
+pub use halt::Halt;
 use hessian::Workspace;
 use phase::Phase;
 use piaffe_model::motion::{Costs, Criterion, HalfStep, Motion};
@@ -493,6 +495,7 @@ impl<'a> Cycle<'a> {
             let mut sum = 0.0;
             for p in &self.phases {
                 let mut integral = Integral::new(d, p.mode, &p.mesh);
+                integral.going.clone_from(&p.cost.going);
                 integrate(criterion, 0.0, &p.mesh, &p.instants, &mut integral);
                 sum += p.duration() * integral.value;
             }

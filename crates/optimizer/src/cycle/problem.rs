@@ -357,7 +357,7 @@ impl Problem for Cycle<'_> {
             let mut slots = out.inequalities[rows.path.clone()].iter_mut();
             for node in 0..p.mesh.nodes.len() {
                 let y = p.instants.row(node);
-                let imposed = p.path.iter().filter(|c| node > 0 || c.at_start);
+                let imposed = p.path.iter().filter(|c| c.is_imposed(node));
                 for (constraint, slot) in imposed.zip(&mut slots) {
                     *slot = constraint.value(y);
                 }
@@ -441,7 +441,7 @@ impl Problem for Cycle<'_> {
                 change.clear();
                 change.extend(p.instants.gradients(node).chunks(local.len()).map(|g| dot(g, &local)));
                 let y = p.linearized(node);
-                let imposed = p.path.iter().filter(|c| node > 0 || c.at_start);
+                let imposed = p.path.iter().filter(|c| c.is_imposed(node));
                 for (constraint, slot) in imposed.zip(&mut slots) {
                     let mut sum = 0.0;
                     constraint.partials(y, |quantity, partial| sum += partial * change[quantity]);
