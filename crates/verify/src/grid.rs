@@ -109,7 +109,8 @@ pub fn evaluate(
         if joint.coulomb == 0.0 {
             totals.energy += integral_of_magnitude(powers, spacing);
         } else {
-            let dry = Dry { coulomb: joint.coulomb, rates, at_rest: units.at_rest(), spacing };
+            let rests = rates.iter().all(|rate| rate.abs() <= units.at_rest());
+            let dry = Dry { coulomb: joint.coulomb, rates, rests, spacing };
             totals.energy += dry.energy(powers);
             totals.torque += dry.torque(torques);
         }

@@ -21,8 +21,8 @@ pub struct Dry<'g> {
     pub coulomb: f64,
     /// q̇, rad/s.
     pub rates: &'g [f64],
-    /// Below this rate, rad/s, it asks nothing of the motor.
-    pub at_rest: f64,
+    /// Whether the joint rests all the while: then it asks nothing of the motor.
+    pub rests: bool,
     pub spacing: f64,
 }
 
@@ -58,7 +58,7 @@ impl Dry<'_> {
 
     fn motion(&self, rate: &Interval) -> Motion {
         let [first, last] = [0, 1].map(|k| rate.values[rate.begin + k]);
-        match first.abs().max(last.abs()) <= self.at_rest {
+        match self.rests {
             true => Motion::OneWay(0.0),
             false if rate.changes_sign() => Motion::Turns(root(&rate.cubic(), [0.0, 1.0]), first.signum()),
             false => Motion::OneWay((first + last).signum()),
