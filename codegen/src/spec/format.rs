@@ -131,14 +131,14 @@ pub(super) static JOINT: Table = Table {
             "N·m·s/rad",
             "Torque per rate that the motor gives to overcome viscous friction, at the joint.",
         )
-        .or("0: no viscous friction"),
+        .or("0"),
         Key::new(
             "coulomb",
             Number(NonNegative),
             "N·m",
             "Torque that the motor gives to overcome dry friction while the joint moves, at the joint.",
         )
-        .or("0: no dry friction"),
+        .or("0"),
         Key::new("actuator", Name, "", "The motor that drives it."),
     ],
 };
