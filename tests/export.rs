@@ -146,7 +146,9 @@ fn mujoco_agrees_about_masses_feet_and_inverse_dynamics_of_the_real_robot() {
     let rub = rub.iter().map(|gait| gait as &dyn Gait);
     for gait in walking().map(|gait| *gait as &dyn Gait).chain(rub) {
         let d = gait.description();
-        let (result, motion) = optimum(gait, Criterion::Torque);
+        let (mut result, motion) = optimum(gait, Criterion::Torque);
+        // A robot that no build knows brings its files.
+        result.specification = gait.specification().cloned();
         let files = ["mjcf", "npz", "urdf"].map(|format| {
             let path = folder.path().join(format!("{}.{}", d.gait, if format == "mjcf" { "xml" } else { format }));
             std::fs::write(&path, export(&result, &["--format", format, "--rate", "500"])).unwrap();
