@@ -9,7 +9,7 @@ use piaffe_codegen::typeset::latex;
 fn what_motors_overcome_is_told_where_there_is_friction() {
     let (robot, gait) = specification("trot");
     let mut rubs = shipped("trot");
-    assert!(!latex(&robot, &gait, &rubs).contains("motor}}"));
+    assert!(!latex(&robot, &gait, &rubs).contains(r"\Gamma^{\mathrm{motor}}"));
     (rubs.joints[0].damping, rubs.joints[0].coulomb, rubs.joints[1].coulomb) = (0.25, 0.5, 0.125);
     let text = latex(&robot, &gait, &rubs);
     let first = r"\Gamma^{\mathrm{motor}}_{1} &= \Gamma_{1} + 0.25\,\dot q_{1} + 0.5\,\operatorname{sign} \dot q_{1}";
