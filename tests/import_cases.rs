@@ -409,7 +409,7 @@ fn mjcf_says_the_same_as_urdf() {
     assert!(lacking.len() == 8 && lacking.iter().all(|f| f.remedy.contains("--velocity")));
     let made = import(&text, &given(&[("--velocity", "20")])).unwrap();
     let (robot, control) = (builds(&made), imported("00-control-ok.urdf").1);
-    assert!(says(&made, "damping, friction and springs are dropped, of 4 joints"));
+    assert!(says(&made, "the friction of 4 joints is taken over, as `damping` and `coulomb`"));
     assert_eq!(robot.platform, control.platform);
     for (leg, other) in robot.legs.iter().zip(&control.legs) {
         for (s, t) in leg.chain.iter().zip(&other.chain) {
@@ -420,6 +420,7 @@ fn mjcf_says_the_same_as_urdf() {
         }
         let knee = &leg.chain[1].joint.actuator;
         assert!((knee.gear, knee.max_torque) == (50.0, 0.6) && (knee.rotor_inertia - 0.0003).abs() < 1e-12);
+        assert_eq!((leg.chain[1].joint.friction.damping, leg.chain[0].joint.friction.damping), (1.0, 0.0));
         assert_eq!(leg.chain[0].joint.actuator.max_torque, 30.0);
     }
 }
@@ -500,4 +501,37 @@ fn where_only_flight_makes_a_trot_possible_that_is_the_trot() {
     );
     assert!(made.notes.iter().any(|note| note.starts_with("the trot flies: ")), "{:#?}", made.notes);
     assert!(made.found[0].gait == "trot" && made.found[0].speeds.len() >= 3, "{:?}", made.found);
+}
+
+/// `<dynamics>` of URDF and what MJCF calls `damping` and `frictionloss` are the specification's `damping` and `coulomb`.
+#[test]
+fn friction_is_taken_over_and_said() {
+    let plain = text("00-control-ok.urdf");
+    let limits = plain.matches("<limit ").count();
+    let given = |dynamics: &dyn Fn(usize) -> String| {
+        let mut parts = plain.split("<limit ");
+        let first = parts.next().unwrap().to_string();
+        parts.enumerate().fold(first, |all, (k, part)| format!("{all}{}<limit {part}", dynamics(k)))
+    };
+    let all = import(&given(&|_| r#"<dynamics damping="0.02" friction="0.3"/>"#.into()), &Options::default()).unwrap();
+    assert!(says(&all, &format!("the friction of {limits} joints is taken over")) && !says(&all, "dropped, of"));
+    let joints = |robot: Robot| robot.legs.into_iter().flat_map(|leg| leg.chain).map(|s| s.joint).collect::<Vec<_>>();
+    for joint in joints(builds(&all)) {
+        assert_eq!((joint.friction.damping, joint.friction.coulomb), (0.02, 0.3), "{}", joint.name);
+    }
+    // As without it, but for that.
+    let bare = import(&plain, &Options::default()).unwrap();
+    let stripped = all.robot.lines().filter(|l| !l.contains("damping") && !l.contains("coulomb"));
+    assert_eq!(stripped.collect::<Vec<_>>(), bare.robot.lines().collect::<Vec<_>>());
+
+    // Counterparts rub alike.
+    let one = given(&|k| if k == 0 { r#"<dynamics damping="0.04"/>"#.into() } else { String::new() });
+    let one = import(&one, &Options::default()).unwrap();
+    assert!(one.notes.iter().any(|note| note.contains("is the mean of it and its counterparts")), "{:?}", one.notes);
+    let sum: f64 = joints(builds(&one)).iter().map(|joint| joint.friction.damping).sum();
+    assert!((sum - 0.04).abs() < 1e-12, "{sum}");
+
+    let drives =
+        import(&given(&|_| r#"<dynamics damping="-0.1"/>"#.into()), &Options::default()).expect_err("drives").0;
+    assert!(drives.len() == limits && drives.iter().all(|f| f.what.contains("less than none") && !f.remedy.is_empty()));
 }

@@ -3,6 +3,8 @@
 
 #[path = "similarity/copy.rs"]
 mod copy;
+#[path = "friction/gaits.rs"]
+mod rubbing;
 #[path = "gaits/walking.rs"]
 mod walking;
 
@@ -156,6 +158,8 @@ fn copies_by_powers_of_two_have_the_same_bits() {
     has_the_same_bits(named("amble"), Criterion::Torque, large);
     has_the_same_bits(named("curvet"), Criterion::Torque, small);
     has_the_same_bits(named("rabbit/walk"), Criterion::Energy, large);
+    has_the_same_bits(&rubbing::dry(named("trot")), Criterion::Torque, large);
+    has_the_same_bits(&rubbing::dry(named("rabbit/walk")), Criterion::Energy, small);
 }
 
 #[test]
@@ -164,6 +168,7 @@ fn copies_by_powers_of_two_are_the_same_program() {
         for criterion in Criterion::ALL {
             is_the_same_program(*gait, criterion, (2f64.powi(-10), 2f64.powi(20)));
             is_the_same_program(*gait, criterion, (2f64.powi(6), 2f64.powi(-31)));
+            is_the_same_program(&rubbing::dry(*gait), criterion, (2f64.powi(6), 2f64.powi(20)));
         }
     }
 }

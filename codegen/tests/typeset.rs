@@ -6,6 +6,18 @@ use common::{FAMILIES, GAITS, shipped, specification};
 use piaffe_codegen::typeset::latex;
 
 #[test]
+fn what_motors_overcome_is_told_where_there_is_friction() {
+    let (robot, gait) = specification("trot");
+    let mut rubs = shipped("trot");
+    assert!(!latex(&robot, &gait, &rubs).contains(r"\Gamma^{\mathrm{motor}}"));
+    (rubs.joints[0].damping, rubs.joints[0].coulomb, rubs.joints[1].coulomb) = (0.25, 0.5, 0.125);
+    let text = latex(&robot, &gait, &rubs);
+    let first = r"\Gamma^{\mathrm{motor}}_{1} &= \Gamma_{1} + 0.25\,\dot q_{1} + 0.5\,\operatorname{sign} \dot q_{1}";
+    let second = r"\Gamma^{\mathrm{motor}}_{2} &= \Gamma_{2} + 0.125\,\operatorname{sign} \dot q_{2}";
+    assert!(text.contains(first) && text.contains(second) && !text.contains("motor}}_{3}"), "{text}");
+}
+
+#[test]
 fn documents_are_balanced_and_name_the_parameters() {
     for key in GAITS {
         let (robot, gait) = specification(key);

@@ -125,7 +125,7 @@ impl Kernels {
         batch(py, [("q", q, d.orientations())], &blocks, length, |[q], out| gait.foot_jacobian(leg, q, out))
     }
 
-    /// Ẍ, Γ, F.
+    /// Ẍ, Γ (what moves the robot, without friction), F.
     fn inverse<'py>(
         &self,
         py: Python<'py>,

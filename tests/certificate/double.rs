@@ -66,6 +66,10 @@ impl Scalar for Double {
         self.magnitude()
     }
 
+    fn side(self, rest: f64) -> Double {
+        self.high.side(rest).into()
+    }
+
     fn value(self) -> f64 {
         self.high
     }

@@ -165,3 +165,24 @@ fn what_is_undefined_is_unknown() {
         assert_eq!(unknown.least_magnitude(), 0.0);
     }
 }
+
+/// Dry friction has the sign of a rate: where that may be either, so may be its sign.
+#[test]
+fn a_sign_is_every_sign_that_it_may_be() {
+    let (rest, one) = (1e-6, |sign: f64| [sign, sign]);
+    let bounds = |coefficients: &[f64]| Taylor::<4>::polynomial(coefficients).side(rest).bounds();
+    let encloses = |coefficients: &[f64], low: f64, high: f64| {
+        let [least, most] = bounds(coefficients);
+        assert!(least <= low && most >= high, "{coefficients:?}: {least} {most}");
+    };
+    let near = |found: [f64; 2], sign: [f64; 2]| (0..2).all(|k| (found[k] - sign[k]).abs() < 1e-12);
+    assert!(near(bounds(&[2.0, 1.0]), one(1.0)) && near(bounds(&[-2.0, 1.0]), one(-1.0)));
+    assert!(near(bounds(&[1e-7]), one(0.0)));
+    encloses(&[0.0, 1.0], -1.0, 1.0);
+    encloses(&[0.5, 1.0], -1.0, 1.0);
+    encloses(&[1.0 + 0.5e-6, 1.0], 0.0, 1.0);
+    let unknown = Taylor::<4>::UNKNOWN.side(rest).bounds();
+    assert!(unknown[0] <= -1.0 && unknown[1] >= 1.0);
+    let widened = Taylor::<4>::polynomial(&[1e-3]).widened(2e-3).side(rest).bounds();
+    assert!(widened[0] <= -1.0 && widened[1] >= 1.0);
+}

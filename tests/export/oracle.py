@@ -14,9 +14,11 @@ moments = []
 for moment in request["moments"]:
     data.qpos[:], data.qvel[:], data.qacc[:] = moment["qpos"], moment["qvel"], moment["qacc"]
     mujoco.mj_inverse(model, data)
-    # Column by column: what each acceleration takes beyond none.
-    bias = data.qfrc_bias.copy()
     forces = data.qfrc_inverse.copy()
+    # Column by column: what each acceleration takes beyond none.
+    data.qacc[:] = 0
+    mujoco.mj_inverse(model, data)
+    bias = data.qfrc_inverse.copy()
     mass = []
     for k in range(model.nv):
         data.qacc[:] = 0
@@ -32,6 +34,7 @@ answer = {
     "mass_urdf": float(sum(from_urdf.body_mass)),
     "start": model.key("start").qpos.tolist(),
     "moments": moments,
+    "frictionloss": model.dof_frictionloss.tolist(),
     "arrays": arrays,
 }
 json.dump(answer, sys.stdout)

@@ -87,6 +87,8 @@ impl<'a> Copy<'a> {
             joint.unloaded_speed *= by.rate();
             joint.loaded_speed *= by.rate();
             joint.rotor_inertia *= by.inertia();
+            joint.damping *= by.torque() * by.time;
+            joint.coulomb *= by.torque();
         }
         d.phases.to_mut().iter_mut().for_each(|phase| phase.duration = phase.duration.map(|t| t * by.time));
         d.limits.min_vertical_force *= by.force();

@@ -164,6 +164,7 @@ fn tied<'n>(numbers: &'n [Number], robot: &Robot, gait: &Gait) -> Vec<Vec<&'n Nu
         // A mirror image turns the other way.
         tie(&format!("joints.{a}.range.lower"), &format!("joints.{b}.range.upper"));
         tie(&format!("joints.{a}.range.upper"), &format!("joints.{b}.range.lower"));
+        ["damping", "coulomb"].iter().for_each(|key| tie(&format!("joints.{a}.{key}"), &format!("joints.{b}.{key}")));
     }
     if mirrored && gait.rotation == Rotation::Roll {
         // The hips are mirror images about the mass centre.
@@ -224,9 +225,12 @@ fn rounded(slope: f64) -> f64 {
 }
 
 impl Mechanism {
-    /// Numbers that only limit: of each joint its range, greatest torque and speed limits; then the gait's limits.
+    /// Numbers that no equation of motion contains: of each joint its range, greatest torque, speed limits and friction; then the
+    /// gait's limits.
     pub fn limiting_numbers(&self) -> Vec<f64> {
-        let of_joint = |j: &Actuated| [j.range[0], j.range[1], j.max_torque, j.unloaded_speed, j.loaded_speed];
+        let of_joint = |j: &Actuated| {
+            [j.range[0], j.range[1], j.max_torque, j.unloaded_speed, j.loaded_speed, j.damping, j.coulomb]
+        };
         let l = &self.limits;
         let of_gait = [l.friction, l.min_vertical_force, l.swing_clearance];
         let durations = self.phases.iter().flat_map(|phase| phase.duration);
@@ -246,6 +250,12 @@ fn places(robot: &mut Robot, gait: &mut Gait, mut visit: impl FnMut(Place)) {
         let ([lower, upper], name) = (&mut joint.range, &joint.name);
         add(format_args!("joints.{name}.range.lower"), "rad", lower);
         add(format_args!("joints.{name}.range.upper"), "rad", upper);
+        // A joint without friction has none to change.
+        let of_friction =
+            [("damping", "N·m·s/rad", &mut joint.friction.damping), ("coulomb", "N·m", &mut joint.friction.coulomb)];
+        for (key, unit, number) in of_friction.into_iter().filter(|(_, _, number)| **number != 0.0) {
+            add(format_args!("joints.{name}.{key}"), unit, number);
+        }
         let motor = &mut joint.actuator;
         let name = &motor.name;
         add(format_args!("actuators.{name}.gear"), "", &mut motor.gear);

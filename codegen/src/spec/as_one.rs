@@ -198,8 +198,10 @@ pub(super) fn driven_unlike(a: &Leg, b: &Leg, mirrored: bool) -> Option<String> 
             let (a, b) = (s.range, t.range);
             return Some(format!("the {mirrored}ranges of `{}` and `{}` differ: {a:?} and {b:?}", s.name, t.name));
         }
-        let same = same_motor(&s.actuator, &t.actuator);
-        (!same).then(|| format!("`{}` and `{}` have different motors", s.name, t.name))
+        let same_motors = same_motor(&s.actuator, &t.actuator);
+        let unlike = [(same_motors, "motors"), (s.friction == t.friction, "friction")];
+        let (_, what) = unlike.into_iter().find(|(same, _)| !same)?;
+        Some(format!("`{}` and `{}` have different {what}", s.name, t.name))
     })
 }
 
@@ -259,7 +261,7 @@ impl Robot {
 #[cfg(test)]
 mod tests {
     use super::super::rigid::{IDENTITY, apply, times, turn};
-    use super::super::types::Segment;
+    use super::super::types::{Friction, Segment};
     use super::*;
 
     fn leg(axes: &[Axis], mount: [f64; 3], ends: &[[f64; 3]]) -> Leg {
@@ -273,7 +275,13 @@ mod tests {
                 loaded_speed: 1.0,
                 rotor_inertia: 0.0,
             };
-            let joint = Joint { name: "joint".into(), axis: *axis, range: [-1.0, 1.0], actuator };
+            let joint = Joint {
+                name: "joint".into(),
+                axis: *axis,
+                range: [-1.0, 1.0],
+                friction: Friction::default(),
+                actuator,
+            };
             let (name, inertia) = ("link".into(), [[0.0; 3]; 3]);
             let link = Link { name, mass: 1.0, end: *end, com: [0.0; 3], inertia, locked: Vec::new() };
             Segment { joint, link }

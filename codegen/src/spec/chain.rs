@@ -180,7 +180,8 @@ impl Parts {
         let raw = &self.joints[joint];
         let actuator = raw.actuator.as_ref()?;
         let actuator = self.actuators.iter().find(|(name, _)| name.value == actuator.value)?.1.clone()?;
-        let joint = Joint { name: raw.name.value.clone(), axis: raw.axis.value, range: raw.range?, actuator };
+        let (name, axis) = (raw.name.value.clone(), raw.axis.value);
+        let joint = Joint { name, axis, range: raw.range?, friction: raw.friction?, actuator };
         Some(Segment { joint, link: self.link(&raw.child.as_ref()?.value)?.clone() })
     }
 

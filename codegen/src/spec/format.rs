@@ -125,6 +125,20 @@ pub(super) static JOINT: Table = Table {
         )
         .or("\"pitch\""),
         Key::new("range", Pair(Angle), "rad", "Lower and upper stop."),
+        Key::new(
+            "damping",
+            Number(NonNegative),
+            "N·m·s/rad",
+            "Torque per rate that the motor gives to overcome viscous friction, at the joint.",
+        )
+        .or("0"),
+        Key::new(
+            "coulomb",
+            Number(NonNegative),
+            "N·m",
+            "Torque that the motor gives to overcome dry friction while the joint moves, at the joint.",
+        )
+        .or("0"),
         Key::new("actuator", Name, "", "The motor that drives it."),
     ],
 };

@@ -12,7 +12,7 @@
 //!
 //! A quantity with a unit never has a default, but where absence says all there is: a platform's mass centre
 //! lies at the origin of the frame of the legs' mounts unless `com` says otherwise, axes are principal ones
-//! unless `products` are given, there is no foot without `foot_mass`, a platform has no
+//! unless `products` are given, there is no foot without `foot_mass`, a joint has no friction without `damping` or `coulomb`, a platform has no
 //! `extent`, and body and platform must stay above the ground at no particular height unless `body_clearance` and
 //! `min_platform_height` say so. Other defaults: a joint's `axis` is
 //! pitch, a leg's `first_joint` is the only joint that hangs on the platform, a gait's `name` is its file's

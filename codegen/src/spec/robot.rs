@@ -7,7 +7,7 @@ use super::format;
 use super::keys::Table;
 use super::name;
 use super::syntax;
-use super::types::{Axis, Link, Platform, Robot};
+use super::types::{Axis, Friction, Link, Platform, Robot};
 use super::view::View;
 
 /// A validated robot, and where its parts stand in its file, so that a gait that contradicts it can point there.
@@ -106,6 +106,7 @@ pub(super) struct RawJoint {
     pub child: Option<At<String>>,
     pub axis: At<Axis>,
     pub range: Option<[f64; 2]>,
+    pub friction: Option<Friction>,
     pub actuator: Option<At<String>>,
 }
 
@@ -117,6 +118,7 @@ impl RawJoint {
             parent: None,
             child: None,
             range: None,
+            friction: None,
             actuator: None,
         };
         let Some(view) = view else { return joint };
@@ -131,6 +133,9 @@ impl RawJoint {
             joint.axis = At { value, span: word.span };
         }
         joint.range = view.pair("range", sink).map(|range| range.value);
+        let mut friction = |key| if view.has(key) { view.number(key, sink).map(|x| x.value) } else { Some(0.0) };
+        let (damping, coulomb) = (friction("damping"), friction("coulomb"));
+        joint.friction = damping.zip(coulomb).map(|(damping, coulomb)| Friction { damping, coulomb });
         joint.actuator = view.text("actuator", sink);
         joint
     }

@@ -80,7 +80,17 @@ pub struct Joint {
     pub axis: Axis,
     /// Lower and upper stop, rad.
     pub range: [f64; 2],
+    pub friction: Friction,
     pub actuator: Actuator,
+}
+
+/// What a motor overcomes besides the dynamics, at the joint: `damping · q̇ + coulomb · sign q̇`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Friction {
+    /// N·m·s/rad.
+    pub damping: f64,
+    /// N·m.
+    pub coulomb: f64,
 }
 
 /// A body axis; a joint turns positively about it.

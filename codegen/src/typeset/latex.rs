@@ -3,7 +3,7 @@
 use super::terms::{Term, gathered};
 use crate::dynamics::{Model, closed_forms};
 use crate::expr::{Kind, Monomial, Poly, Var};
-use crate::mechanism::{Family, Mechanism, Parameter, parameters};
+use crate::mechanism::{Actuated, Family, Mechanism, Parameter, parameters};
 use crate::spec::{Gait, Robot};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -55,7 +55,22 @@ pub fn latex(robot: &Robot, gait: &Gait, mechanism: &Mechanism) -> String {
         text += &aligned("Sums of parameters", &named);
     }
     text += &body;
+    text += &motors(mechanism);
     text + "\\end{document}\n"
+}
+
+/// What motors give where joints rub, N·m; nothing where none does.
+fn motors(mechanism: &Mechanism) -> String {
+    let motor = |(k, joint): (usize, &Actuated)| {
+        let (q, sign) = (format!("\\dot q_{{{}}}", k + 1), "\\operatorname{sign}");
+        let viscous = (joint.damping != 0.0).then(|| format!("{}\\,{q}", number(joint.damping)));
+        let dry = (joint.coulomb != 0.0).then(|| format!("{}\\,{sign} {q}", number(joint.coulomb)));
+        let rubs = viscous.is_some() || dry.is_some();
+        let terms = [Some(format!("\\Gamma_{{{}}}", k + 1)), viscous, dry].into_iter().flatten();
+        rubs.then(|| lines(&format!("\\Gamma^{{\\mathrm{{motor}}}}_{{{}}}", k + 1), terms))
+    };
+    let equations: Vec<String> = mechanism.joints.iter().enumerate().filter_map(motor).collect();
+    if equations.is_empty() { String::new() } else { aligned("Torques of the motors, with friction", &equations) }
 }
 
 fn aligned(title: &str, equations: &[String]) -> String {

@@ -1,8 +1,8 @@
 //! Random robots that could be built: positive masses, inertias that a rigid body can have.
 
 use piaffe_codegen::spec::{
-    Actuator, Axis, Gait, Inertia, Joint, Leg, Limits, Link, Phases, Platform, Robot, Rotation, Segment, Then,
-    Unactuated,
+    Actuator, Axis, Friction, Gait, Inertia, Joint, Leg, Limits, Link, Phases, Platform, Robot, Rotation, Segment,
+    Then, Unactuated,
 };
 
 /// Numbers in [0, 1), handed out one after another.
@@ -117,7 +117,13 @@ fn leg(name: &str, mount: [f64; 3], axes: &[Axis], draws: &mut Draws, build: &Bu
             rotor_inertia: draws.between(0.0, build.rotor) / 100.0,
         };
         Segment {
-            joint: Joint { name: format!("joint{k}"), axis: *axis, range: [-1.0, 1.0], actuator },
+            joint: Joint {
+                name: format!("joint{k}"),
+                axis: *axis,
+                range: [-1.0, 1.0],
+                friction: Friction::default(),
+                actuator,
+            },
             link: Link {
                 name: format!("link{k}"),
                 mass,

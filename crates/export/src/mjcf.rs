@@ -107,12 +107,16 @@ fn limb(x: &mut Xml, d: &Description, leg: &Leg, member: &Member, bodies: &[Body
     let limits = &d.joints[joint];
     let share = leg.members.len() as f64;
     x.element("body", &[("name", body.name.into()), ("pos", numbers(&frame::vector(body.offset)))], |x| {
-        let attributes = [
+        let mut attributes = vec![
             ("name", name.to_string()),
             ("axis", numbers(&frame::axis(body.axis))),
             ("range", numbers(&limits.range)),
             ("armature", (limits.rotor_inertia / share).to_string()),
         ];
+        if limits.has_friction() {
+            attributes.push(("damping", (limits.damping / share).to_string()));
+            attributes.push(("frictionloss", (limits.coulomb / share).to_string()));
+        }
         x.leaf("joint", &attributes);
         inertial(x, body.mass, body.com, &body.inertia);
         let bone = numbers(&[[0.0; 3], end].concat());

@@ -36,6 +36,11 @@ fn limb(x: &mut Xml, d: &Description, leg: &Leg, member: &Member) {
                 ("velocity", limits.unloaded_speed.to_string()),
             ];
             x.leaf("limit", &limit);
+            if limits.has_friction() {
+                let of_joint = |all: f64| (all / leg.members.len() as f64).to_string();
+                let friction = [("damping", of_joint(limits.damping)), ("friction", of_joint(limits.coulomb))];
+                x.leaf("dynamics", &friction);
+            }
         });
         parent = child;
     }

@@ -284,9 +284,13 @@ fn unpaired(robot: &robot::Robot) -> String {
 fn remarks(model: &Model, robot: &robot::Robot, notes: &mut Vec<String>) {
     let file = model.format.name();
     notes.push("visual and collision geometry is dropped, but for where feet touch the ground".into());
-    let damped = model.joints.iter().filter(|j| j.damped && j.turns()).count();
-    if damped > 0 {
-        notes.push(format!("damping, friction and springs are dropped, of {damped} joints"));
+    let rubbing = robot.legs.iter().flat_map(|l| &l.segments).filter(|s| !s.joint.friction.is_none()).count();
+    if rubbing > 0 {
+        notes.push(format!("the friction of {rubbing} joints is taken over, as `damping` and `coulomb`"));
+    }
+    let sprung = model.joints.iter().filter(|j| j.sprung && j.turns()).count();
+    if sprung > 0 {
+        notes.push(format!("springs are dropped, of {sprung} joints"));
     }
     let motors = || robot.legs.iter().flat_map(|l| &l.segments).map(|s| &s.joint.motor);
     if motors().any(|m| m.gear.is_none()) {

@@ -2,7 +2,7 @@
 //! which all of them take their defaults.
 
 use super::fault::{Faults, Kind, Place};
-use super::model::{Format, Joint, Kind as JointKind, Link, Mass, Model, Shape, Solid};
+use super::model::{Format, Friction, Joint, Kind as JointKind, Link, Mass, Model, Shape, Solid};
 use super::xml::{File, child, children, plain};
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
 use roxmltree::Node;
@@ -290,7 +290,8 @@ impl<'a, 't, 'f> Reader<'a, 't, 'f> {
                 velocity: None,
                 gear: None,
                 rotor: None,
-                damped: false,
+                friction: Friction::default(),
+                sprung: false,
             });
             return child;
         }
@@ -341,9 +342,8 @@ impl<'a, 't, 'f> Reader<'a, 't, 'f> {
         };
         let force: Option<[f64; 2]> = self.numbers(of, "actuatorfrcrange");
         let armature = self.number(of, "armature").filter(|a| *a > 0.0);
-        let damped = ["damping", "frictionloss", "stiffness"]
-            .iter()
-            .any(|key| self.list(of, key).is_some_and(|list| list.iter().any(|x| *x != 0.0)));
+        let [damping, coulomb] = ["damping", "frictionloss"].map(|key| self.number(of, key).unwrap_or_default());
+        let sprung = self.number(of, "stiffness").is_some_and(|stiffness| stiffness != 0.0);
         self.joints.push(Joint {
             name,
             place,
@@ -358,7 +358,8 @@ impl<'a, 't, 'f> Reader<'a, 't, 'f> {
             velocity: None,
             gear: None,
             rotor: armature,
-            damped,
+            friction: Friction { damping, coulomb },
+            sprung,
         });
     }
 

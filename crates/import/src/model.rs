@@ -81,7 +81,22 @@ pub struct Joint {
     pub gear: Option<f64>,
     /// At the motor, kg·m².
     pub rotor: Option<f64>,
-    pub damped: bool,
+    pub friction: Friction,
+    /// Whether a spring acts on it.
+    pub sprung: bool,
+}
+
+/// Of a joint: viscous, N·m·s/rad, and dry, N·m.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Friction {
+    pub damping: f64,
+    pub coulomb: f64,
+}
+
+impl Friction {
+    pub fn is_none(self) -> bool {
+        self == Friction::default()
+    }
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]

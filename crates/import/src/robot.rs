@@ -3,7 +3,7 @@
 use super::fault::{Faults, Kind};
 use super::inertia;
 use super::limbs::{Limb, Limbs};
-use super::model::{Kind as JointKind, Model};
+use super::model::{Friction, Kind as JointKind, Model};
 use super::words::{Identifiers, fits, identifier};
 use super::{Options, ROUNDED, Rigid, Setting, nearest_axis};
 use nalgebra::{Matrix3, Vector3};
@@ -43,6 +43,7 @@ pub struct Joint {
     /// −1 where the specification's angle is the negative of the file's.
     pub sign: f64,
     pub range: [f64; 2],
+    pub friction: Friction,
     pub motor: Motor,
 }
 
@@ -201,7 +202,12 @@ impl Making<'_> {
         let range = self.range(index);
         let (motor, [low, high]) = (motor?, range?);
         let range = if sign < 0.0 { [0.0 - high, 0.0 - low] } else { [low, high] };
-        Some(Joint { name: self.joints.distinct(&joint.name), axis, sign, range, motor })
+        let (name, friction) = (self.joints.distinct(&joint.name), joint.friction);
+        if friction.damping < 0.0 || friction.coulomb < 0.0 {
+            let what = "its friction is less than none: it would drive the joint";
+            self.faults.add(Kind::Number, Some(&joint.place), what, "remove the sign of its damping or its friction");
+        }
+        Some(Joint { name, axis, sign, range, friction, motor })
     }
 
     fn motor(&mut self, index: usize) -> Option<Motor> {

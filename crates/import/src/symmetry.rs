@@ -4,6 +4,7 @@
 //! stops and motors in the plane; what they weigh is their own.
 
 use super::Rigid;
+use super::model::Friction;
 use super::robot::{Leg, Motor, PITCH, Robot};
 use nalgebra::Vector3;
 
@@ -68,6 +69,14 @@ pub fn arrange(robot: &mut Robot, tolerance: f64, notes: &mut Vec<String>) -> Op
                     new.joint.name
                 )),
                 _ => {}
+            }
+            let (was, is) = (old.joint.friction, new.joint.friction);
+            if was != is {
+                notes.push(format!(
+                    "the friction of `{}` is the mean of it and its counterparts: {:.3e} N·m·s/rad and {:.3e} N·m instead of {:.3e} \
+                     and {:.3e}",
+                    new.joint.name, is.damping, is.coulomb, was.damping, was.coulomb
+                ));
             }
             let moved = (0..2).any(|k| (old.joint.range[k] - new.joint.range[k]).abs() > 1e-9);
             if moved {
@@ -169,6 +178,8 @@ impl Likening {
             t.joint.range = if mirrored { [0.0 - shared[1], 0.0 - shared[0]] } else { shared };
             let motor = one_motor(&s.joint.motor, &t.joint.motor);
             (s.joint.motor, t.joint.motor) = (motor, motor);
+            let friction = mean(&[s.joint.friction, t.joint.friction]);
+            (s.joint.friction, t.joint.friction) = (friction, friction);
             let names = [s.link.name.clone(), t.link.name.clone()];
             if self.weigh(&mut s.link.rigid, &mut t.link.rigid, &names).is_none() {
                 let [a, b] = names;
@@ -276,6 +287,8 @@ impl Likening {
             if given.iter().any(|rotor| *rotor != given[0]) {
                 segment.joint.motor.rotor = Some(given.iter().sum::<f64>() / given.len() as f64);
             }
+            let all: Vec<Friction> = legs.iter().map(|l| l.segments[depth].joint.friction).collect();
+            segment.joint.friction = mean(&all);
         }
         for other in &legs[1..] {
             let mean = |likening: &mut Self, a: f64, b: f64, name: &str| {
@@ -297,6 +310,7 @@ impl Likening {
                 s.link.end = Vector3::new(t.link.end.x, t.link.end.y, s.link.end.z);
                 if s.joint.axis == PITCH {
                     s.joint.range = t.joint.range;
+                    s.joint.friction = t.joint.friction;
                     s.joint.motor = t.joint.motor;
                 }
             }
@@ -317,6 +331,15 @@ impl Likening {
 
 fn shared(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0].max(b[0]), a[1].min(b[1])]
+}
+
+/// What joints rub that must rub alike; of equal ones as it is.
+fn mean(all: &[Friction]) -> Friction {
+    let mean = |of: fn(&Friction) -> f64| match all.windows(2).all(|pair| of(&pair[0]) == of(&pair[1])) {
+        true => all.first().map_or(0.0, of),
+        false => all.iter().map(of).sum::<f64>() / all.len() as f64,
+    };
+    Friction { damping: mean(|f| f.damping), coulomb: mean(|f| f.coulomb) }
 }
 
 /// What both are. A gear or rotor that the file gives for one of them is the other's too; rotors that were identified one by

@@ -1,7 +1,7 @@
 //! URDF → [`Model`]. Only the parts that matter are read; what else is in a file cannot refuse it.
 
 use super::fault::{Faults, Kind, Place};
-use super::model::{Format, Joint, Kind as JointKind, Link, Mass, Model, Shape, Solid};
+use super::model::{Format, Friction, Joint, Kind as JointKind, Link, Mass, Model, Shape, Solid};
 use super::xml::{File, child, children, plain};
 use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
 use roxmltree::Node;
@@ -189,9 +189,7 @@ impl Reader<'_, '_, '_> {
                 Some(_) => self.file.number(limit, key, self.faults).unwrap_or(f64::NAN),
             })
         });
-        let number_of = |node: Node, key: &str| node.attribute(key).and_then(|t| t.parse::<f64>().ok()).unwrap_or(0.0);
-        let damped =
-            child(node, "dynamics").is_some_and(|d| number_of(d, "damping") != 0.0 || number_of(d, "friction") != 0.0);
+        let friction = child(node, "dynamics").map(|dynamics| self.friction(dynamics)).unwrap_or_default();
         let [Some(parent), Some(child)] = ends else { return None };
         let range = range.filter(|r| r.iter().all(|x| !x.is_nan()));
         let offset = Vector3::zeros();
@@ -209,8 +207,14 @@ impl Reader<'_, '_, '_> {
             velocity,
             gear: None,
             rotor: None,
-            damped,
+            friction,
+            sprung: false,
         })
+    }
+
+    fn friction(&mut self, dynamics: Node) -> Friction {
+        let mut number = |key| self.file.number(dynamics, key, self.faults).unwrap_or_default();
+        Friction { damping: number("damping"), coulomb: number("friction") }
     }
 
     /// A gear and a rotor, of the joint and its one actuator.

@@ -88,6 +88,8 @@ fn joint(j: &mechanism::Actuated) -> Joint {
         unloaded_speed: j.unloaded_speed,
         loaded_speed: j.loaded_speed,
         rotor_inertia: j.rotor_inertia,
+        damping: j.damping,
+        coulomb: j.coulomb,
     }
 }
 

@@ -21,6 +21,7 @@ pub use limit::Limit;
 pub use numbers::Lever;
 pub use specification::Specification;
 use std::borrow::Cow;
+use std::fmt;
 
 /// What a gait is made of, in numbers.
 #[derive(Clone, Debug)]
@@ -161,7 +162,7 @@ pub struct Body {
 }
 
 /// An actuated joint; N·m, rad and rad/s at the joint.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Joint {
     pub name: &'static str,
     pub range: [f64; 2],
@@ -171,6 +172,35 @@ pub struct Joint {
     /// Speed limit at `max_torque`.
     pub loaded_speed: f64,
     pub rotor_inertia: f64,
+    /// What its motor overcomes besides the dynamics is `damping · q̇ + coulomb · sign q̇`: viscous friction, N·m·s/rad.
+    pub damping: f64,
+    /// Dry friction, N·m.
+    pub coulomb: f64,
+}
+
+/// A joint rests while its rate is below this share of √(gravity/leg): what there is of a rate then is rounding, and dry friction
+/// asks nothing of the motor.
+pub const AT_REST: f64 = 1e-6;
+
+impl Joint {
+    /// Whether its motor has friction to overcome.
+    pub fn has_friction(&self) -> bool {
+        self.damping != 0.0 || self.coulomb != 0.0
+    }
+}
+
+/// Friction is told where there is some: so a robot without it has the fingerprint that it always had.
+impl fmt::Debug for Joint {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let mut joint = f.debug_struct("Joint");
+        joint.field("name", &self.name).field("range", &self.range).field("gear", &self.gear);
+        joint.field("max_torque", &self.max_torque).field("unloaded_speed", &self.unloaded_speed);
+        joint.field("loaded_speed", &self.loaded_speed).field("rotor_inertia", &self.rotor_inertia);
+        if self.has_friction() {
+            joint.field("damping", &self.damping).field("coulomb", &self.coulomb);
+        }
+        joint.finish()
+    }
 }
 
 /// A virtual leg.

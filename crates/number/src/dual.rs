@@ -60,6 +60,10 @@ impl<T: Scalar, const N: usize> Scalar for Dual<T, N> {
         self.chain(self.x.abs(), T::from(if self.x.value() < 0.0 { -1.0 } else { 1.0 }))
     }
 
+    fn side(self, rest: f64) -> Self {
+        Dual::constant(self.x.side(rest))
+    }
+
     fn scale(self, factor: f64) -> Self {
         Dual { x: self.x.scale(factor), d: self.d.map(|d| d.scale(factor)) }
     }

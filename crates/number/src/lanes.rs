@@ -34,6 +34,10 @@ impl<const N: usize> Scalar for Lanes<N> {
         self.each(f64::abs)
     }
 
+    fn side(self, rest: f64) -> Self {
+        self.each(|x| x.side(rest))
+    }
+
     fn scale(self, factor: f64) -> Self {
         self.each(|x| x * factor)
     }

@@ -22,6 +22,8 @@ pub trait Scalar:
     fn sin_cos(self) -> (Self, Self);
     fn sqrt(self) -> Self;
     fn abs(self) -> Self;
+    /// Its sign: −1 or 1, and 0 where the magnitude is not above `rest`. Of a set it is the set of all signs; it has no derivative.
+    fn side(self, rest: f64) -> Self;
     /// Times a plain number.
     fn scale(self, factor: f64) -> Self {
         self * Self::from(factor)
@@ -61,6 +63,10 @@ impl Scalar for f64 {
 
     fn abs(self) -> f64 {
         f64::abs(self)
+    }
+
+    fn side(self, rest: f64) -> f64 {
+        if f64::abs(self) <= rest { 0.0 } else { self.signum() }
     }
 
     fn scale(self, factor: f64) -> f64 {

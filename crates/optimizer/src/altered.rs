@@ -1,4 +1,4 @@
-//! A gait with some numbers changed that its dynamics do not contain: limits, ranges, the polynomials' order.
+//! A gait with some numbers changed that its dynamics do not contain: limits, ranges, friction, the polynomials' order.
 
 use crate::constraints::sharing::obstacle;
 use piaffe_model::whole::Whole;

@@ -12,6 +12,7 @@ mod examine;
 pub mod finite;
 pub mod flow;
 pub mod four_legs;
+mod friction;
 pub mod instant;
 mod lgl;
 pub mod optimality;

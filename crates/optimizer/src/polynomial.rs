@@ -64,6 +64,14 @@ fn bracketed(p: &[f64], derivative: &[f64], mut a: f64, mut b: f64) -> Option<f6
     Some(s)
 }
 
+/// A polynomial whose Bernstein coefficients on [0, 1] agree in sign has no root there.
+pub fn may_change_sign(c: &[f64; NODES]) -> bool {
+    let [c0, c1, c2, c3, c4] = *c;
+    let bernstein =
+        [c0, c0 + c1 / 4.0, c0 + c1 / 2.0 + c2 / 6.0, c0 + 0.75 * c1 + 0.5 * c2 + 0.25 * c3, c0 + c1 + c2 + c3 + c4];
+    bernstein.iter().any(|b| *b > 0.0) && bernstein.iter().any(|b| *b < 0.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,6 +1,6 @@
 //! The dynamics of a gait at given states, as JSON: for checking against other implementations.
 //!
-//! Every quantity comes from the generated kernels; the only numerics here are the condition
+//! Every quantity comes from the generated kernels, Γ what moves the robot (motors overcome friction besides); the only numerics here are the condition
 //! numbers of the linear systems behind them in the robot's units, which tell a singular case from a result.
 
 use nalgebra::DMatrix;

@@ -5,6 +5,7 @@
 
 use crate::cycle::{Cycle, Sample, theta};
 use crate::flow::Undefined;
+use crate::friction::Friction;
 use crate::instant::{Glance, Quantities};
 use crate::swing::swings;
 use piaffe_model::motion::{Criterion, Motion};
@@ -55,7 +56,7 @@ pub struct Moment {
     pub q: Vec<f64>,
     pub qd: Vec<f64>,
     pub qdd: Vec<f64>,
-    /// Γ of every joint of the virtual legs, N·m.
+    /// Γ of every joint's motor of the virtual legs, friction overcome, N·m.
     pub torque: Vec<f64>,
     /// Reaction on the virtual leg in support, N; in flight zero.
     pub force: Point,
@@ -209,6 +210,10 @@ impl Role<'_> {
         let mut centre = centre_shape.zeros();
         let (x, xd) = ([&platform[..nc], &q].concat(), [&velocity[..], &qd].concat());
         self.gait.centre_of_mass(&x, &xd, &mut centre);
+        let mut motors = sample.quantities[y.torque(0)..][..nj].to_vec();
+        for ((motor, friction), rate) in motors.iter_mut().zip(Friction::all(d)).zip(sample.state[1]) {
+            friction.into_iter().for_each(|friction| *motor += friction.torque(*rate));
+        }
         let force = match y.components() {
             0 => [0.0; 3],
             components => self.point(&sample.quantities[y.force(0)..][..components]),
@@ -221,7 +226,7 @@ impl Role<'_> {
             transition: Transition::Touchdown(0),
             platform: [platform, plain.point(&velocity), plain.point(&shape.xdd.of(&inverse)[..nc])],
             centre: [centre_shape.position, centre_shape.velocity].map(|block| plain.point(block.of(&centre))),
-            torque: self.renamed(&sample.quantities[y.torque(0)..][..nj]),
+            torque: self.renamed(&motors),
             force,
             feet: self.feet(sample, mode, origin),
             q,

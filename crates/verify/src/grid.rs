@@ -10,10 +10,10 @@ use super::instants::{Instants, State};
 use super::margins::{Units, clearance, steepness};
 use super::numbers::Numbers;
 use super::phase::Phase;
-use super::quadrature::{integral, integral_of_magnitude};
+use super::quadrature::{Dry, integral, integral_of_magnitude};
 use super::swing::swings;
 use piaffe_model::motion::HalfStep;
-use piaffe_number::Lanes;
+use piaffe_number::{Lanes, Scalar};
 use std::array::from_fn;
 
 /// What a half step adds up to.
@@ -53,9 +53,9 @@ pub fn evaluate(
     let lanes: Vec<HalfStep<Lanes<LANES>>> = motion.iter().map(HalfStep::cast).collect();
     let side_by_side = swings(description, &lanes, index);
     let mut state = State::new(description);
+    // Lists of a joint at a time, as if there were no dry friction.
     let mut squares = vec![0.0; points];
-    // One list of powers per joint.
-    let mut powers = vec![0.0; points * joints];
+    let [mut torques, mut powers, mut rates] = [0; 3].map(|_| vec![0.0; points * joints]);
     let mut peaks = vec![[0.0_f64; 2]; joints];
     let last = points - 1;
     let mut platform = vec![0.0; points];
@@ -69,12 +69,14 @@ pub fn evaluate(
             return Err(phase.singular(t[0]));
         }
         let count = LANES.min(points - first);
-        for (j, (torque, rate)) in state.torques.iter().zip(&state.qd).enumerate() {
+        for (j, (motor, rate)) in state.motors.iter().zip(&state.qd).enumerate() {
+            let joint = &description.joints[j];
+            let smooth = if joint.coulomb == 0.0 { *motor } else { state.torques[j] + rate.scale(joint.damping) };
             for lane in 0..count {
-                let (torque, rate) = (torque.0[lane], rate.0[lane]);
+                let (torque, rate, at) = (smooth.0[lane], rate.0[lane], j * points + first + lane);
                 squares[first + lane] += torque * torque;
-                powers[j * points + first + lane] = torque * rate;
-                peaks[j] = [peaks[j][0].max(torque.abs()), peaks[j][1].max(rate.abs())];
+                (torques[at], powers[at], rates[at]) = (torque, torque * rate, rate);
+                peaks[j] = [peaks[j][0].max(motor.0[lane].abs()), peaks[j][1].max(rate.abs())];
             }
         }
         units.margins(instants.numbers(), &instants.contact(), &state, |constraint, margin| {
@@ -100,8 +102,20 @@ pub fn evaluate(
         tally.note(Constraint::Touchdown, -landing.abs() / units.leg, phase.duration);
     }
     let spacing = phase.duration / last as f64;
-    let energy = powers.chunks_exact(points).map(|w| integral_of_magnitude(w, spacing)).sum();
-    Ok(Totals { torque: integral(&squares, spacing), energy, travel: platform[last] - platform[0], peaks })
+    let mut totals =
+        Totals { torque: integral(&squares, spacing), energy: 0.0, travel: platform[last] - platform[0], peaks };
+    for (j, joint) in description.joints.iter().enumerate() {
+        let [torques, powers, rates] = [&torques, &powers, &rates].map(|list| &list[j * points..][..points]);
+        if joint.coulomb == 0.0 {
+            totals.energy += integral_of_magnitude(powers, spacing);
+        } else {
+            let rests = rates.iter().all(|rate| rate.abs() <= units.at_rest());
+            let dry = Dry { coulomb: joint.coulomb, rates, rests, spacing };
+            totals.energy += dry.energy(powers);
+            totals.torque += dry.torque(torques);
+        }
+    }
+    Ok(totals)
 }
 
 /// How much higher the curve could be, m, where the foot is so much above it; what is missing, where it is below.

@@ -41,8 +41,10 @@ pub struct State<T = f64> {
     pub q: Vec<T>,
     pub qd: Vec<T>,
     pub qdd: Vec<T>,
-    /// Of every joint, N·m.
+    /// Of every joint: what moves the robot, N·m.
     pub torques: Vec<T>,
+    /// Of every joint's motor, at the joint: that, and what overcomes friction, N·m.
+    pub motors: Vec<T>,
     /// Reaction on the stance foot, N.
     pub force: Vec3<T>,
     /// The platform's mass centre, m.
@@ -65,6 +67,7 @@ impl<T: Scalar> State<T> {
             qdd: q.clone(),
             q,
             torques: vec![T::zero(); joints],
+            motors: vec![T::zero(); joints],
             force: zero,
             platform: zero,
             feet: [zero; 2],

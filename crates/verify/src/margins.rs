@@ -8,7 +8,7 @@ use super::instants::State;
 use super::numbers::Numbers;
 use super::support::leg_length;
 use super::swing::Swing;
-use piaffe_model::Description;
+use piaffe_model::{AT_REST, Description};
 use piaffe_number::Scalar;
 
 /// A rate of this many radians per unit of time is a slow one.
@@ -47,6 +47,11 @@ impl Units {
         SLOW / self.time
     }
 
+    /// A joint slower than this rests, rad/s.
+    pub fn at_rest(&self) -> f64 {
+        AT_REST / self.time
+    }
+
     /// Margins of the duration of phase `k`.
     pub fn duration<T: Scalar>(
         &self,
@@ -75,7 +80,7 @@ impl Units {
     ) {
         let one = T::from(1.0);
         for (j, joint) in numbers.joints.iter().enumerate() {
-            let load = state.torques[j].abs() / joint.max_torque;
+            let load = state.motors[j].abs() / joint.max_torque;
             note(Constraint::Torque(j), one - load);
             let fastest = joint.unloaded_speed - (joint.unloaded_speed - joint.loaded_speed) * load;
             note(Constraint::Speed(j), (fastest - state.qd[j].abs()) / joint.unloaded_speed);

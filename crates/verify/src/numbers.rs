@@ -52,6 +52,10 @@ pub struct Actuator<T> {
     pub unloaded_speed: T,
     pub loaded_speed: T,
     pub rotor_inertia: T,
+    /// Viscous friction.
+    pub damping: T,
+    /// Dry friction.
+    pub coulomb: T,
 }
 
 impl<T: Scalar> Numbers<T> {
@@ -79,6 +83,8 @@ impl<T: Scalar> Numbers<T> {
             max_torque: one(),
             unloaded_speed: one(),
             loaded_speed: one(),
+            damping: one(),
+            coulomb: one(),
             rotor_inertia,
         });
         let joints = joints.collect();

@@ -20,7 +20,7 @@ pub struct Sample {
     pub q: Vec<f64>,
     pub qd: Vec<f64>,
     pub qdd: Vec<f64>,
-    /// Of every joint, N·m.
+    /// Of every joint's motor, at the joint, N·m.
     pub torques: Vec<f64>,
     /// Reaction on the stance foot, N.
     pub force: [f64; 3],
@@ -51,7 +51,7 @@ pub fn sample(description: &Description, motion: &Motion, points: usize) -> Resu
                 q: state.q.clone(),
                 qd: state.qd.clone(),
                 qdd: state.qdd.clone(),
-                torques: state.torques.clone(),
+                torques: state.motors.clone(),
                 force: state.force.into(),
                 platform: (origin + state.platform).into(),
                 feet: state.feet.map(|foot| (origin + foot).into()),

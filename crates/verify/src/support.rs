@@ -20,7 +20,7 @@ use super::instants::State;
 use super::multibody::Multibody;
 use super::numbers::Numbers;
 use num_traits::Zero;
-use piaffe_model::{Description, Rotation};
+use piaffe_model::{AT_REST, Description, Rotation};
 use piaffe_number::Scalar;
 
 /// f1 below this share of (mass × leg²) counts as zero.
@@ -40,6 +40,8 @@ pub struct Support<'a, T: Scalar = f64, G: Geometry<T> = Space> {
     /// What must stay above the ground: where it is, or which point before is at the same height.
     points: Vec<Result<Arms<T>, usize>>,
     smallest_f1: f64,
+    /// A joint slower than this is at rest, rad/s.
+    at_rest: f64,
 }
 
 /// Inertial force (gravity included) and moment of a body, as if β̈ were 0, and what β̈ = 1 adds.
@@ -76,6 +78,7 @@ impl<'a, T: Scalar, G: Geometry<T>> Support<'a, T, G> {
             loads: vec![load; description.bodies.len()],
             carried: vec![(zero, still); description.bodies.len()],
             smallest_f1: VANISHING * description.total_mass() * length * length,
+            at_rest: AT_REST * (description.gravity / length).sqrt(),
         }
     }
 
@@ -151,9 +154,21 @@ impl<'a, T: Scalar, G: Geometry<T>> Support<'a, T, G> {
         reaction
     }
 
+    /// What the motors give: friction is a torque inside a joint, which moves nothing and which its motor has to overcome.
+    fn overcome_friction(&self, state: &mut State<T>) {
+        let description = self.multibody.description();
+        for (k, joint) in self.multibody.numbers().joints.iter().enumerate() {
+            state.motors[k] = state.torques[k];
+            if description.joints[k].has_friction() {
+                state.motors[k] += joint.damping * state.qd[k] + joint.coulomb * state.qd[k].side(self.at_rest);
+            }
+        }
+    }
+
     /// Completes what follows from the last [`Support::accelerate`] and the `qdd` it wrote.
     pub fn complete(&mut self, state: &mut State<T>) {
         let force = self.torques(&state.qdd, &mut state.torques);
+        self.overcome_friction(state);
         let feet = [0, 1].map(|leg| *self.multibody.foot(leg));
         let origin = self.leg.map_or_else(|| self.multibody.centre(), |leg| feet[leg]);
         // How deep the hips are does not matter in the plane.

@@ -1,8 +1,9 @@
 //! Actuators (§6.1): |Γ| ≤ Γmax and |q̇| ≤ ω0 − (ω0 − ω1) |Γ|/Γmax at every joint.
 //!
-//! Each absolute value is two linear constraints, so the envelope is four.
+//! Each absolute value is two linear constraints, so the envelope is four. Γ is the motor's torque: where there is friction it
+//! overcomes that too.
 
-use super::{Limits, PathConstraint};
+use super::{Form, Limits, PathConstraint};
 use crate::instant::Quantities;
 use piaffe_model::{Description, Limit};
 use piaffe_number::Scalar;
@@ -10,17 +11,22 @@ use piaffe_number::Scalar;
 pub fn constraints<T: Scalar>(d: &Description, limits: &Limits<T>, y: &Quantities) -> Vec<PathConstraint<T>> {
     let mut list = Vec::new();
     for (j, (joint, limits)) in d.joints.iter().zip(&limits.joints).enumerate() {
+        let (torque, rate) = (y.torque(j), y.rate(j));
+        let mut add = |limit, unit, offset, [by_rate, by_torque]: [T; 2]| {
+            let form = match limits.friction {
+                Some(friction) => Form::Motor { offset, torque: (torque, by_torque), rate: (rate, by_rate), friction },
+                None if limit == Limit::Torque => Form::Linear { offset, terms: vec![(torque, by_torque)] },
+                None => Form::Linear { offset, terms: vec![(rate, by_rate), (torque, by_torque)] },
+            };
+            list.push(PathConstraint { limit, of: joint.name.into(), form, unit, at_start: true, on_demand: false });
+        };
         for sign in [1.0, -1.0] {
-            let terms = vec![(y.torque(j), T::from(-sign))];
-            list.push(PathConstraint::linear(Limit::Torque, joint.max_torque, limits.max_torque, terms).of(joint.name));
+            add(Limit::Torque, joint.max_torque, limits.max_torque, [T::zero(), T::from(-sign)]);
         }
         let slope = (limits.unloaded_speed - limits.loaded_speed) / limits.max_torque;
         for (speed, torque) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
-            let terms = vec![(y.rate(j), T::from(-speed)), (y.torque(j), T::from(-torque) * slope)];
-            list.push(
-                PathConstraint::linear(Limit::TorqueSpeed, joint.unloaded_speed, limits.unloaded_speed, terms)
-                    .of(joint.name),
-            );
+            let by = [T::from(-speed), T::from(-torque) * slope];
+            add(Limit::TorqueSpeed, joint.unloaded_speed, limits.unloaded_speed, by);
         }
     }
     list

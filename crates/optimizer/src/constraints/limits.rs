@@ -1,5 +1,6 @@
 //! The numbers that the constraints compare with, as the optimizer reads them from a description.
 
+use crate::friction::Friction;
 use piaffe_model::Description;
 use piaffe_number::{Dual, Scalar};
 
@@ -23,6 +24,8 @@ pub struct JointLimits<T = f64> {
     pub max_torque: T,
     pub unloaded_speed: T,
     pub loaded_speed: T,
+    /// What its motor has to overcome, if anything.
+    pub friction: Option<Friction<T>>,
 }
 
 impl Limits {
@@ -47,6 +50,7 @@ impl<T: Scalar> Limits<T> {
             max_torque: one(&|d| d.joints[j].max_torque),
             unloaded_speed: one(&|d| d.joints[j].unloaded_speed),
             loaded_speed: one(&|d| d.joints[j].loaded_speed),
+            friction: Friction::read(d, j, &one),
         };
         Limits {
             joints: (0..d.joints()).map(joint).collect(),

@@ -5,6 +5,7 @@
 //! natural unit, so that 1e-6 means the same everywhere.
 
 mod actuator;
+mod going;
 mod ground;
 mod impact;
 mod limits;
@@ -16,6 +17,7 @@ mod swing;
 pub use impact::ImpactConstraints;
 pub use limits::{JointLimits, Limits};
 
+use crate::friction::Friction;
 use crate::instant::Quantities;
 use crate::swing::swings;
 use piaffe_model::{Description, Limit};
@@ -33,6 +35,8 @@ pub struct PathConstraint<T = f64> {
     pub unit: f64,
     /// Whether it also is imposed at the first instant (a joint's range there is that of the last).
     pub at_start: bool,
+    /// Whether it is imposed only where somebody asks for it (`Cycle::keep_going`).
+    pub on_demand: bool,
 }
 
 /// The formula of a path constraint.
@@ -44,6 +48,8 @@ pub enum Form<T = f64> {
     Cone { normal: usize, factor: T, tangential: Vec<usize> },
     /// A limit on one of the real legs.
     Share(Share<T>),
+    /// `offset + by_torque · Γ + by_rate · q̇`, where Γ is that of a motor with friction to overcome; quantities with these factors.
+    Motor { offset: T, torque: (usize, T), rate: (usize, T), friction: Friction<T> },
 }
 
 /// All path constraints of phase `k` of a gait.
@@ -69,12 +75,25 @@ pub fn path_constraints_of<T: Scalar>(
     if mode.stance().is_some() {
         list.extend(sharing::constraints(description, limits, &y));
     }
+    list.extend(going::constraints(description, &y));
     list
 }
 
 impl<T: Scalar> PathConstraint<T> {
     fn linear(limit: Limit, unit: f64, offset: T, terms: Vec<(usize, T)>) -> PathConstraint<T> {
-        PathConstraint { limit, of: String::new(), form: Form::Linear { offset, terms }, unit, at_start: true }
+        PathConstraint {
+            limit,
+            of: String::new(),
+            form: Form::Linear { offset, terms },
+            unit,
+            at_start: true,
+            on_demand: false,
+        }
+    }
+
+    /// Whether it is imposed at this node of a phase.
+    pub fn is_imposed(&self, node: usize) -> bool {
+        !self.on_demand && (node > 0 || self.at_start)
     }
 
     fn of(self, what: impl Into<String>) -> PathConstraint<T> {
@@ -88,6 +107,10 @@ impl<T: Scalar> PathConstraint<T> {
             Form::Linear { offset, terms } => *offset + terms.iter().fold(T::zero(), |sum, (q, c)| sum + *c * y[*q]),
             Form::Cone { normal, factor, tangential } => *factor * y[*normal] - norm(y, tangential),
             Form::Share(share) => share.value(y),
+            Form::Motor { offset, torque, rate, friction } => {
+                let motor = y[torque.0] + friction.torque(y[rate.0]);
+                *offset + rate.1 * y[rate.0] + torque.1 * motor
+            }
         };
         value / T::from(self.unit)
     }
@@ -107,13 +130,18 @@ impl PathConstraint {
                 }
             }
             Form::Share(share) => share.partials(y, |q, partial| add(q, partial / self.unit)),
+            // Where the rate changes its sign the limit jumps; it has no slope there.
+            Form::Motor { torque, rate, friction, .. } => {
+                add(torque.0, torque.1 / self.unit);
+                add(rate.0, (rate.1 + torque.1 * friction.damping) / self.unit);
+            }
         }
     }
 
     /// Calls `add(quantity, quantity, second derivative)`.
     pub fn curvature(&self, y: &[f64], mut add: impl FnMut(usize, usize, f64)) {
         let tangential = match &self.form {
-            Form::Linear { .. } => return,
+            Form::Linear { .. } | Form::Motor { .. } => return,
             Form::Share(share) => return share.curvature(y, |a, b, second| add(a, b, second / self.unit)),
             Form::Cone { tangential, .. } => tangential,
         };

@@ -13,6 +13,7 @@
 //! against pitching, which must not be asked for: it never is where the hips are level with the mass centre.
 
 use super::{Form, Limits, PathConstraint};
+use crate::friction::Friction;
 use crate::instant::{Quantities, Shared};
 use piaffe_model::{Description, Leg, Limit, Then};
 use piaffe_number::{Dual, Scalar};
@@ -87,14 +88,14 @@ const RATE: usize = 9;
 
 #[derive(Clone, Copy, Debug)]
 enum Of<T> {
-    /// The torque of a joint, N·m.
+    /// The torque of a joint that moves the robot, N·m.
     Torque,
     /// Vertical force ≥ this, N.
     Vertical(T),
     /// |tangential| ≤ this · vertical.
     Friction(T),
-    /// `bound − torque · Γ − rate · q̇ ≥ 0`.
-    Actuator { bound: T, torque: T, rate: f64 },
+    /// `bound − torque · Γ − rate · q̇ ≥ 0`, Γ the motor's, which may have friction to overcome.
+    Actuator { bound: T, torque: T, rate: f64, friction: Option<Friction<T>> },
 }
 
 pub fn constraints<T: Scalar>(d: &Description, limits: &Limits<T>, y: &Quantities) -> Vec<PathConstraint<T>> {
@@ -108,7 +109,7 @@ pub fn constraints<T: Scalar>(d: &Description, limits: &Limits<T>, y: &Quantitie
     for (member, offset) in leg.members.iter().zip(offsets(d)) {
         let mut add = |limit: Limit, of: String, unit: f64, joint: usize, formula: Of<T>| {
             let form = Form::Share(Share { quantities: quantities(d, y, joint), offset, weight, of: formula });
-            list.push(PathConstraint { limit, of, form, unit, at_start: true });
+            list.push(PathConstraint { limit, of, form, unit, at_start: true, on_demand: false });
         };
         let foot = || member.name.to_string();
         add(Limit::VerticalForceOfFoot, foot(), weight, 0, Of::Vertical(limits.min_vertical_force.scale(share)));
@@ -117,13 +118,14 @@ pub fn constraints<T: Scalar>(d: &Description, limits: &Limits<T>, y: &Quantitie
             let (joint, actuator) = (&d.joints[j], &limits.joints[j]);
             let joint_of_leg = || format!("{} of {}", joint.name, member.name);
             let bound = actuator.max_torque.scale(share);
+            let friction = actuator.friction;
             for sign in [1.0, -1.0] {
-                let limit = Of::Actuator { bound, torque: T::from(sign), rate: 0.0 };
+                let limit = Of::Actuator { bound, torque: T::from(sign), rate: 0.0, friction };
                 add(Limit::Torque, joint_of_leg(), joint.max_torque * share, k, limit);
             }
             let slope = (actuator.unloaded_speed - actuator.loaded_speed) / bound;
             for (rate, torque) in [(1.0, slope), (1.0, -slope), (-1.0, slope), (-1.0, -slope)] {
-                let limit = Of::Actuator { bound: actuator.unloaded_speed, torque, rate };
+                let limit = Of::Actuator { bound: actuator.unloaded_speed, torque, rate, friction };
                 add(Limit::TorqueSpeed, joint_of_leg(), joint.unloaded_speed, k, limit);
             }
         }
@@ -171,11 +173,17 @@ impl<T: Scalar> Of<T> {
             }
             gamma
         };
+        // Real legs move alike, so that each of the two has half of the virtual leg's.
+        let of_friction = |friction: Option<Friction<T>>| friction.map(|f| f.torque(v[RATE]).scale(0.5));
         match self {
             Of::Torque => torque_of_joint(),
             Of::Vertical(least) => vertical - least,
             Of::Friction(mu) => mu * vertical - length([forward, lateral], weight),
-            Of::Actuator { bound, torque, rate } => bound - torque * torque_of_joint() - v[RATE].scale(rate),
+            Of::Actuator { bound, torque, rate, friction } => {
+                let mut motor = torque_of_joint();
+                of_friction(friction).into_iter().for_each(|friction| motor += friction);
+                bound - torque * motor - v[RATE].scale(rate)
+            }
         }
     }
 }
@@ -193,7 +201,10 @@ impl Share {
             Of::Torque => Of::Torque,
             Of::Vertical(least) => Of::Vertical(T::from(least)),
             Of::Friction(mu) => Of::Friction(T::from(mu)),
-            Of::Actuator { bound, torque, rate } => Of::Actuator { bound: bound.into(), torque: torque.into(), rate },
+            Of::Actuator { bound, torque, rate, friction } => {
+                let friction = friction.map(Friction::cast);
+                Of::Actuator { bound: bound.into(), torque: torque.into(), rate, friction }
+            }
         };
         of.value(self.offset, self.weight, v)
     }

@@ -3,9 +3,14 @@
 //! The paper counts the torques of virtual joints. Of n joints that share one as equals each has Γ/n, so that n Σ Γᵢ² is Γ² and
 //! Σ |Γᵢ q̇| is |Γ q̇|: counted like this, a gait whose legs share as equals costs as much on its real joints as on its virtual
 //! ones, and unequal shares cost more.
+//!
+//! Where there is friction the motor gives more than what moves the robot. Dry friction has a sign, that of the rate, and jumps with
+//! it: whoever asks says on which `side`, −1 or 1, or 0 for all but dry friction.
 
 use crate::constraints::sharing::{Share, applies, torques};
+use crate::friction::Friction;
 use crate::instant::Quantities;
+use crate::lgl::NODES;
 use piaffe_model::{Description, Mode};
 use smallvec::SmallVec;
 
@@ -14,6 +19,9 @@ use smallvec::SmallVec;
 pub struct Drive {
     torque: Torque,
     rate: usize,
+    friction: Option<Friction>,
+    /// The virtual leg's joint that it is, or is one of.
+    pub joint: usize,
     /// How many joints do together what the virtual leg's does.
     pub sharing: f64,
 }
@@ -33,14 +41,19 @@ impl Drive {
     /// All of a mode of a gait. Real legs that swing do the same, so that the virtual leg's joints stand for them.
     pub fn all(d: &Description, mode: Mode) -> Vec<Drive> {
         let y = Quantities::new(d, mode);
-        let of_virtual = |j: usize| Drive { torque: Torque::Virtual(y.torque(j)), rate: y.rate(j), sharing: 1.0 };
+        let friction = Friction::all(d);
+        let of = |joint: usize, torque: Torque, sharing: f64| {
+            let friction = friction[joint].map(|friction| friction.shared(sharing));
+            Drive { torque, rate: y.rate(joint), friction, joint, sharing }
+        };
+        let of_virtual = |j: usize| of(j, Torque::Virtual(y.torque(j)), 1.0);
         if mode == Mode::Flight || !applies(d) {
             return (0..d.joints()).map(of_virtual).collect();
         }
         let leg = &d.legs[0];
         let sharing = leg.members.len() as f64;
         let standing = torques(d, &y).into_iter();
-        let standing = standing.map(|(j, share)| Drive { torque: Torque::Real(share), rate: y.rate(j), sharing });
+        let standing = standing.map(|(j, share)| of(j, Torque::Real(share), sharing));
         let swinging = (0..d.joints()).filter(|j| !(leg.first_joint..leg.end_joint).contains(j)).map(of_virtual);
         standing.chain(swinging).collect()
     }
@@ -51,7 +64,9 @@ impl Drive {
             Torque::Virtual(_) => 2,
             Torque::Real(_) => Partials::new().inline_size(),
         };
-        (entries, entries * (entries + 1))
+        // An element in which the joint turns around has a part on each side.
+        let parts = if self.coulomb() == 0.0 { 1 } else { NODES };
+        (parts * entries, parts * entries * (entries + 1))
     }
 
     /// Which quantity its rate is.
@@ -59,22 +74,46 @@ impl Drive {
         self.rate
     }
 
+    /// Dry friction, N·m.
+    pub fn coulomb(&self) -> f64 {
+        self.friction.map_or(0.0, |friction| friction.coulomb)
+    }
+
+    /// Below this rate there is none, rad/s.
+    pub fn at_rest(&self) -> f64 {
+        self.friction.map_or(0.0, |friction| friction.at_rest)
+    }
+
     /// N·m.
     #[inline]
-    pub fn torque(&self, y: &[f64]) -> f64 {
-        match &self.torque {
+    pub fn torque(&self, y: &[f64], side: f64) -> f64 {
+        let moving = match &self.torque {
             Torque::Virtual(quantity) => y[*quantity],
             Torque::Real(share) => share.value(y),
+        };
+        match self.friction {
+            Some(friction) => moving + friction.damping * y[self.rate] + friction.coulomb * side,
+            None => moving,
         }
     }
 
     /// W.
     #[inline]
-    pub fn power(&self, y: &[f64]) -> f64 {
-        self.torque(y) * y[self.rate]
+    pub fn power(&self, y: &[f64], side: f64) -> f64 {
+        self.torque(y, side) * y[self.rate]
     }
 
+    /// The same on either side.
     pub fn torque_partials(&self, y: &[f64]) -> Partials {
+        let mut partials = self.moving_partials(y);
+        if let Some(friction) = self.friction {
+            partials.push((self.rate, friction.damping));
+        }
+        partials
+    }
+
+    /// Of the torque that moves the robot.
+    fn moving_partials(&self, y: &[f64]) -> Partials {
         let mut partials = Partials::new();
         match &self.torque {
             Torque::Virtual(quantity) => partials.push((*quantity, 1.0)),
@@ -83,10 +122,12 @@ impl Drive {
         partials
     }
 
-    pub fn power_partials(&self, y: &[f64]) -> Partials {
-        let mut partials = self.torque_partials(y);
+    pub fn power_partials(&self, y: &[f64], side: f64) -> Partials {
+        let mut partials = self.moving_partials(y);
         partials.iter_mut().for_each(|(_, partial)| *partial *= y[self.rate]);
-        partials.push((self.rate, self.torque(y)));
+        let torque = self.torque(y, side);
+        let by_rate = self.friction.map_or(torque, |friction| torque + friction.damping * y[self.rate]);
+        partials.push((self.rate, by_rate));
         partials
     }
 
@@ -101,10 +142,13 @@ impl Drive {
         }
     }
 
-    /// The same of the power.
+    /// The same of the power, which is the same on either side.
     pub fn power_curvature(&self, y: &[f64], mut add: impl FnMut(usize, usize, f64)) {
-        for (quantity, partial) in self.torque_partials(y) {
+        for (quantity, partial) in self.moving_partials(y) {
             add(quantity, self.rate, partial);
+        }
+        if let Some(friction) = self.friction {
+            add(self.rate, self.rate, 2.0 * friction.damping);
         }
         self.torque_curvature(y, |a, b, second| add(a, b, y[self.rate] * second));
     }

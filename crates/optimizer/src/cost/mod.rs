@@ -2,6 +2,7 @@
 
 mod drive;
 mod energy;
+mod sides;
 mod torque;
 
 pub use drive::Drive;
@@ -23,8 +24,16 @@ pub struct Integral {
     pub seconds: Vec<(usize, usize, usize, f64)>,
     /// Kinks of |power|: second derivative `weight · ∇power(root) ∇power(root)ᵀ` each.
     pub kinks: Vec<Kink>,
+    /// Jumps of the torque.
+    pub turns: Vec<Turn>,
+    /// ∂value/∂(dry friction) of each drive.
+    pub by_coulomb: Vec<f64>,
     /// What is summed over.
     pub drives: Vec<Drive>,
+    /// Of joints that are held still, those with dry friction.
+    pub held: Vec<Drive>,
+    /// Joints that do not turn around where they nearly do.
+    pub going: Vec<Going>,
 }
 
 impl Integral {
@@ -38,7 +47,11 @@ impl Integral {
             partials: Vec::with_capacity(most.0 * nodes),
             seconds: Vec::with_capacity(most.1 * nodes),
             kinks: Vec::with_capacity(drives.len() * nodes),
+            turns: Vec::with_capacity(drives.len() * nodes),
+            by_coulomb: vec![0.0; drives.len()],
             drives,
+            held: Vec::new(),
+            going: Vec::new(),
         }
     }
 
@@ -54,18 +67,62 @@ impl Integral {
     }
 }
 
-/// A simple root of a joint's power inside an element.
+/// A simple root inside an element of a joint's power, or of its rate.
 #[derive(Clone, Debug)]
 pub struct Kink {
+    /// Which of the drives.
+    pub drive: usize,
+    pub bend: Bend,
+    /// First node of the element.
+    pub first: usize,
+    /// Values of the Lagrange polynomials at the root.
+    pub shape: [f64; NODES],
+    pub weight: f64,
+    /// Slope of the power, or of the rate, at the root, per element.
+    pub slope: f64,
+}
+
+/// A joint that goes on the same way in an element.
+#[derive(Clone, Copy, Debug)]
+pub struct Going {
+    pub joint: usize,
+    pub element: usize,
+    /// Of its rate.
+    pub sign: f64,
+}
+
+/// What vanishes at a kink.
+#[derive(Clone, Copy, Debug)]
+pub enum Bend {
+    /// The power, where dry friction has this sign.
+    Power { side: f64 },
+    /// The rate.
+    Rate,
+}
+
+impl Kink {
+    /// Gradient of what vanishes.
+    pub fn partials(&self, drive: &Drive, y: &[f64]) -> Partials {
+        match self.bend {
+            Bend::Power { side } => drive.power_partials(y, side),
+            Bend::Rate => Partials::from_slice(&[(drive.rate(), 1.0)]),
+        }
+    }
+}
+
+/// A simple root of a joint's rate inside an element, at which its torque jumps: second derivative `a bᵀ + b aᵀ`, where a is the
+/// gradient of the rate at the root.
+#[derive(Clone, Debug)]
+pub struct Turn {
     /// Which of the drives.
     pub drive: usize,
     /// First node of the element.
     pub first: usize,
     /// Values of the Lagrange polynomials at the root.
     pub shape: [f64; NODES],
-    pub weight: f64,
-    /// Slope of the power at the root, per element.
-    pub slope: f64,
+    /// b: weights of the gradients of the torque and of the rate at the nodes.
+    pub by_torque: [f64; NODES],
+    pub by_rate: [f64; NODES],
 }
 
 /// Integral of the integrand of `criterion` over one phase, per unit of s (multiply by T).
@@ -76,6 +133,9 @@ pub fn integrate(criterion: Criterion, smoothing: f64, mesh: &Mesh, instants: &I
     integral.partials.clear();
     integral.seconds.clear();
     integral.kinks.clear();
+    integral.turns.clear();
+    integral.by_coulomb.clear();
+    integral.by_coulomb.resize(integral.drives.len(), 0.0);
     match criterion {
         Criterion::Torque => torque::integrate(mesh, instants, integral),
         Criterion::Energy if smoothing > 0.0 => energy::integrate_smooth(smoothing, mesh, instants, integral),

@@ -11,6 +11,7 @@
 
 mod crossing;
 mod dip;
+mod halt;
 mod hessian;
 mod phase;
 mod problem;
@@ -24,6 +25,7 @@ use crate::flow::Undefined;
 use crate::instant::Glance;
 use crate::lgl::NODES;
 use dip::Dip;
+pub use halt::Halt;
 use hessian::Workspace;
 use phase::Phase;
 use piaffe_model::motion::{Costs, Criterion, HalfStep, Motion};
@@ -443,6 +445,13 @@ impl<'a> Cycle<'a> {
         p.cost.partials.iter().map(move |(node, quantity, partial)| (*node, *quantity, share * partial))
     }
 
+    /// Derivatives of the objective in the dry friction of joints, in a half step, where torques and rates stay: joint, derivative.
+    pub fn objective_by_coulomb(&self, phase: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let p = &self.phases[phase];
+        let share = p.duration() * self.per_work();
+        p.cost.drives.iter().zip(&p.cost.by_coulomb).map(move |(drive, by)| (drive.joint, share * by))
+    }
+
     /// The criterion per metre of travel, where the objective is 1 and the mean speed the one asked.
     pub fn criterion_per_objective(&self) -> f64 {
         self.units.integrand(self.criterion) / self.speed.abs()
@@ -486,6 +495,7 @@ impl<'a> Cycle<'a> {
             let mut sum = 0.0;
             for p in &self.phases {
                 let mut integral = Integral::new(d, p.mode, &p.mesh);
+                integral.going.clone_from(&p.cost.going);
                 integrate(criterion, 0.0, &p.mesh, &p.instants, &mut integral);
                 sum += p.duration() * integral.value;
             }

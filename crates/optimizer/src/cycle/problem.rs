@@ -357,7 +357,7 @@ impl Problem for Cycle<'_> {
             let mut slots = out.inequalities[rows.path.clone()].iter_mut();
             for node in 0..p.mesh.nodes.len() {
                 let y = p.instants.row(node);
-                let imposed = p.path.iter().filter(|c| node > 0 || c.at_start);
+                let imposed = p.path.iter().filter(|c| c.is_imposed(node));
                 for (constraint, slot) in imposed.zip(&mut slots) {
                     *slot = constraint.value(y);
                 }
@@ -441,7 +441,7 @@ impl Problem for Cycle<'_> {
                 change.clear();
                 change.extend(p.instants.gradients(node).chunks(local.len()).map(|g| dot(g, &local)));
                 let y = p.linearized(node);
-                let imposed = p.path.iter().filter(|c| node > 0 || c.at_start);
+                let imposed = p.path.iter().filter(|c| c.is_imposed(node));
                 for (constraint, slot) in imposed.zip(&mut slots) {
                     let mut sum = 0.0;
                     constraint.partials(y, |quantity, partial| sum += partial * change[quantity]);
@@ -480,8 +480,10 @@ impl Problem for Cycle<'_> {
         p.project(p.instants.gradient(node, y.rate(joint)), 1.0, row);
         // Of all joints that this one stands for.
         let drives = Drive::all(self.description(), p.mode);
-        let torques =
-            drives.iter().filter(|drive| drive.rate() == y.rate(joint)).map(|d| d.torque(p.linearized(node)).abs());
+        let torques = drives
+            .iter()
+            .filter(|drive| drive.joint == joint)
+            .map(|drive| drive.torque(p.linearized(node), 0.0).abs().max(drive.coulomb()));
         p.mesh.weights[node] * p.duration() * torques.sum::<f64>() * self.per_work()
     }
 

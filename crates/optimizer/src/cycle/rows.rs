@@ -84,10 +84,9 @@ impl Rows {
         for (k, (rows, p)) in of_phase.iter_mut().zip(phases).enumerate() {
             let first = inequalities.len();
             let row = |node: usize, constraint: usize| Row::Path { phase: k, node, constraint };
-            let at_start = (0..p.path.len()).filter(|constraint| p.path[*constraint].at_start);
-            inequalities.extend(at_start.map(|constraint| row(0, constraint)));
-            for node in 1..p.mesh.nodes.len() {
-                inequalities.extend((0..p.path.len()).map(|constraint| row(node, constraint)));
+            for node in 0..p.mesh.nodes.len() {
+                let imposed = (0..p.path.len()).filter(|constraint| p.path[*constraint].is_imposed(node));
+                inequalities.extend(imposed.map(|constraint| row(node, constraint)));
             }
             rows.path = first..inequalities.len();
         }

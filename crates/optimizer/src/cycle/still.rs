@@ -7,7 +7,8 @@
 //! Θ is kept *on* the kink by equations: a rate is a polynomial, and zero where it is zero at as many instants as it has
 //! coefficients. The joint's power is left out, so all is smooth again. Whether the motion is an optimum off the kink too, is
 //! what its subgradients say: power adds |Γ|·|q̇| at each instant, that is ς·Γ·q̇ with any |ς| ≤ 1 where q̇ = 0. The equations
-//! are given up then, and each instant becomes a [kink](piaffe_sqp::Problem::kinks) with |Γ| as the limit of its multiplier. Where
+//! are given up then, and each instant becomes a [kink](piaffe_sqp::Problem::kinks) with |Γ| as the limit of its multiplier. With dry
+//! friction c power adds |Γ + c sign q̇|·|q̇|, which is min(|Γ|, c) sign Γ·q̇ and a kink of max(|Γ|, c). Where
 //! it is none, the way down tells which of the joints had better move: those whose rates it changes.
 
 use super::phase::Phase;
@@ -59,9 +60,10 @@ impl Cycle<'_> {
         let d = self.description();
         for (k, phase) in self.phases.iter_mut().enumerate() {
             phase.still = joints.iter().filter(|s| s.phase == k).map(|s| s.joint).collect();
-            phase.cost.drives = Drive::all(d, phase.mode);
-            let (still, y) = (&phase.still, phase.instants.quantities);
-            phase.cost.drives.retain(|drive| !still.iter().any(|joint| drive.rate() == y.rate(*joint)));
+            let still = &phase.still;
+            let (held, drives) = Drive::all(d, phase.mode).into_iter().partition(|drive| still.contains(&drive.joint));
+            (phase.cost.held, phase.cost.drives) = (held, drives);
+            phase.cost.held.retain(|drive| drive.coulomb() != 0.0);
         }
         self.by_equations = true;
         self.count_rows();

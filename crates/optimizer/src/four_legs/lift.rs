@@ -8,6 +8,7 @@ use super::margin::{Choice, best};
 use super::posture::{Legs, Posture};
 use super::shares::Shares;
 use crate::flow::Undefined;
+use crate::friction::Friction;
 use crate::walk::{Moment, Point, Walk};
 use nalgebra::{DMatrix, DVector};
 use piaffe_model::Gait;
@@ -134,7 +135,14 @@ impl Legs<'_> {
         let posture = self.posture(m);
         let equations = Equations::new(self.whole, &posture, self.description.leg_length());
         let stance: Vec<usize> = m.mode.stance().into_iter().flat_map(|leg| self.members(leg)).collect();
-        let (demand, columns) = (equations.demand(&posture.ud), equations.columns(&stance));
+        let (mut demand, columns) = (equations.demand(&posture.ud), equations.columns(&stance));
+        // What overcomes friction is demanded of the motors, too.
+        let friction = Friction::all(self.description);
+        for joint in 0..self.joints.len() {
+            if let Some(friction) = friction[self.joints[joint]] {
+                demand[PLATFORM + joint] += friction.shared(self.sharing(joint)).torque(posture.rates()[joint]);
+            }
+        }
         let equal = self.equal(&posture, &stance, m.force);
         // The platform has no motors: its six equations are the reactions' alone. In flight nothing is left to meet them: they hold,
         // or are lacking.

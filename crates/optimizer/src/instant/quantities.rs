@@ -30,7 +30,7 @@ impl Quantities {
         }
     }
 
-    /// Γj, N·m.
+    /// Γj that moves the robot, N·m; what a motor overcomes besides is friction's.
     pub fn torque(&self, joint: usize) -> usize {
         joint
     }

@@ -148,6 +148,9 @@ impl<'a> Linearized<'a> {
     /// Of a motion that `cycle` has just simulated.
     fn on(mut cycle: Cycle<'a>, theta: &[f64]) -> Result<Linearized<'a>, Undefined> {
         dips(&cycle).and_then(|dips| dips.impose(&mut cycle)).map_err(|_| Undefined)?;
+        // Where joints nearly turn around, least torque is not smooth.
+        let halts = cycle.halts(AT_REST);
+        cycle.keep_going(&halts);
         // Where joints rest, least energy has kinks.
         let still = cycle.still(AT_REST);
         cycle.hold(&still);

@@ -2,7 +2,7 @@
 
 use super::nearest::{nearest, reach};
 use super::refine::dips;
-use crate::cycle::{AT_REST, Cycle, Label, Still, elements};
+use crate::cycle::{AT_REST, Cycle, Halt, Label, Still, elements};
 use crate::flow::Undefined;
 use piaffe_model::Gait;
 use piaffe_model::motion::{Costs, Criterion, Motion};
@@ -168,7 +168,7 @@ impl Task<'_> {
             }
             iterations += local.iterations;
         }
-        let mut free = self.solve(start, &[], first_step_limit, observe).local;
+        let mut free = self.solve(start, &[], &[], first_step_limit, observe).local;
         iterations += free.iterations;
         let theta = free.theta.clone();
         for share in SLOW {
@@ -183,7 +183,38 @@ impl Task<'_> {
                 free = local;
             }
         }
+        if !free.is_settled() {
+            let local = self.halting(&free.theta, observe);
+            iterations += local.as_ref().map_or(0, |local| local.iterations);
+            free = local.filter(Local::is_settled).unwrap_or(free);
+        }
         Local { iterations, ..free }
+    }
+
+    /// The optimum near `start` whose joints do not turn around where they nearly do, if there are any.
+    fn halting(&self, start: &[f64], observe: Observer) -> Option<Local> {
+        let mut found: Option<Local> = None;
+        let mut kept: Vec<Halt> = Vec::new();
+        let mut iterations = 0;
+        for share in SLOW {
+            let theta = found.as_ref().map_or(start, |local| &local.theta).to_vec();
+            let mut cycle = self.cycle();
+            cycle.simulate(&theta).ok()?;
+            let more: Vec<Halt> =
+                cycle.halts(share).into_iter().filter(|halt| kept.iter().all(|known| !known.is(halt))).collect();
+            if more.is_empty() {
+                continue;
+            }
+            kept.extend(more);
+            let local = self.solve(&theta, &[], &kept, CAUTION, observe).local;
+            iterations += local.iterations;
+            let settled = local.is_settled();
+            found = Some(Local { iterations, ..local });
+            if settled {
+                break;
+            }
+        }
+        found
     }
 
     /// The optimum near `start` with these joints held still, or with fewer: those whose power would be less in motion are let
@@ -192,7 +223,7 @@ impl Task<'_> {
         let mut start = start.to_vec();
         let mut iterations = 0;
         loop {
-            let Solved { local, loose } = self.solve(&start, &held, CAUTION, observe);
+            let Solved { local, loose } = self.solve(&start, &held, &[], CAUTION, observe);
             iterations += local.iterations;
             let Some(loose) = loose else { return Local { iterations, ..local } };
             held.retain(|still| !loose.joints.contains(still));
@@ -210,14 +241,28 @@ impl Task<'_> {
         }
     }
 
-    /// The optimum near `start` with these joints held still, on a mesh that resolves it.
-    fn solve(&self, start: &[f64], still: &[Still], first_step_limit: f64, observe: Observer) -> Solved {
+    /// The optimum near `start` with these joints held still, and these going on, on a mesh that resolves it.
+    fn solve(
+        &self,
+        start: &[f64],
+        still: &[Still],
+        halts: &[Halt],
+        first_step_limit: f64,
+        observe: Observer,
+    ) -> Solved {
+        let go_on = |cycle: &mut Cycle, theta: &[f64]| {
+            if !halts.is_empty() && cycle.simulate(theta).is_ok() {
+                cycle.keep_going(halts);
+            }
+        };
         let mut cycle = self.cycle();
         cycle.hold(still);
+        go_on(&mut cycle, start);
         let mut found = settle(&mut cycle, start, first_step_limit, observe);
         while found.solution.status.is_optimal()
             && let Some(mut finer) = if found.settled { cycle.finer() } else { cycle.twice_as_fine() }
         {
+            go_on(&mut finer, &found.solution.x);
             let mut better = settle(&mut finer, &found.solution.x, CAUTION, observe);
             if !better.solution.status.is_optimal() {
                 // What does not become an optimum there stays what it is: its receipt tells.

@@ -128,7 +128,7 @@ fn suspects(cycle: &Cycle, phase: usize) -> Suspects {
     let mut grid = (1..GRID).map(|k| k as f64 / GRID as f64).peekable();
     for (element, first) in (0..last).step_by(NODES - 1).enumerate() {
         let mut look = false;
-        for (constraint, near) in near.iter_mut().enumerate() {
+        for (constraint, near) in near.iter_mut().enumerate().filter(|(k, _)| !cycle.path(phase)[*k].on_demand) {
             if comes_near(cycle.quartic(phase, constraint, element)) {
                 (look, *near) = (true, true);
             }

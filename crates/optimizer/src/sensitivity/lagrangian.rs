@@ -212,6 +212,9 @@ impl<'a> Slopes<'a> {
                     .for_each(|(node, part)| rows[node].push((constraint, multiplier * part)));
             }
         }
+        for (joint, by) in cycle.objective_by_coulomb(k) {
+            lagrangian += numbers.joints[joint].coulomb.scale(by);
+        }
         let durations: Vec<f64> = self.motion.half_steps.iter().map(|h| h.duration).collect();
         let constraints = path_constraints_of(d, limits, k);
         let mut state = State::new(d);
@@ -221,6 +224,10 @@ impl<'a> Slopes<'a> {
             let y = quantities(d, mode, &swings, &state, share, &durations);
             for (quantity, weight) in weights {
                 lagrangian += y[*quantity].scale(*weight);
+                // A motor also overcomes viscous friction, which is no quantity.
+                if let Some(joint) = numbers.joints.get(*quantity) {
+                    lagrangian += (joint.damping * state.qd[*quantity].value().into()).scale(*weight);
+                }
             }
             for (constraint, multiplier) in rows {
                 lagrangian -= constraints[*constraint].value(&y).scale(*multiplier);

@@ -85,6 +85,16 @@ impl<const N: usize> Scalar for Taylor<N> {
         }
     }
 
+    fn side(self, rest: f64) -> Self {
+        match self.bounds() {
+            [low, _] if low > rest => Taylor::from(1.0),
+            [_, high] if high < -rest => Taylor::from(-1.0),
+            [low, high] if low >= -rest && high <= rest => Taylor::zero(),
+            // Not known, too.
+            _ => Taylor::zero().widened(1.0),
+        }
+    }
+
     fn scale(self, factor: f64) -> Self {
         self.times(factor)
     }

@@ -45,7 +45,7 @@ impl Cycle<'_> {
             g.fill(0.0);
             for (i, shape) in kink.shape.iter().enumerate().take(NODES) {
                 let node = kink.first + i;
-                for (quantity, partial) in p.cost.drives[kink.drive].power_partials(p.linearized(node)) {
+                for (quantity, partial) in kink.partials(&p.cost.drives[kink.drive], p.linearized(node)) {
                     let gradient = p.instants.gradient(node, quantity);
                     g.iter_mut().zip(gradient).for_each(|(slot, by)| *slot += shape * partial * by);
                 }
@@ -56,6 +56,25 @@ impl Cycle<'_> {
             let moved = REACH * change / kink.slope;
             let weight = kink.weight / (1.0 + moved * moved).sqrt();
             square(h, g, weight * scale);
+        }
+        for turn in &p.cost.turns {
+            let drive = &p.cost.drives[turn.drive];
+            let (a, b) = (&mut work.local, &mut work.scratch);
+            a.fill(0.0);
+            b.fill(0.0);
+            let add = |to: &mut [f64], node: usize, quantity: usize, weight: f64| {
+                let gradient = p.instants.gradient(node, quantity);
+                to.iter_mut().zip(gradient).for_each(|(slot, by)| *slot += weight * by);
+            };
+            for i in 0..NODES {
+                let node = turn.first + i;
+                add(a, node, drive.rate(), turn.shape[i]);
+                add(b, node, drive.rate(), turn.by_rate[i]);
+                for (quantity, partial) in drive.torque_partials(p.linearized(node)) {
+                    add(b, node, quantity, turn.by_torque[i] * partial);
+                }
+            }
+            product(h, a, b, scale);
         }
         self.weighted_path_rows(k, mu, |node, constraint, multiplier| {
             constraint.curvature(p.linearized(node), |a, b, second| {

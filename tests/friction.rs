@@ -1,0 +1,209 @@
+//! Joints that rub: what motors overcome costs, limits and is told, and moves nothing.
+
+#[path = "friction/robot.rs"]
+mod robot;
+
+use piaffe::Robot;
+use piaffe::cycle::{Cycle, theta};
+use piaffe::four_legs::Lift;
+use piaffe::interpreter::Interpreted;
+use piaffe::model::Gait;
+use piaffe::motion::{Criterion, Motion};
+use piaffe::result::{GaitResult, Status};
+use piaffe::search::local::{Local, Task};
+use piaffe::search::multi_start::{Settings, search};
+use piaffe::sensitivity::sensitivities;
+use piaffe::sqp::Control;
+use piaffe::units::Units;
+use piaffe::verify::{sample, verify};
+use piaffe::walk::{Moment, Walk};
+use robot::{Friction, GEARED, with};
+
+/// m/s.
+const SPEED: f64 = 0.6;
+/// A gait in stance alone, one whose platform pitches, one that flies.
+const GAITS: [&str; 3] = ["trot", "curvet", "running_trot"];
+
+fn speed(gait: &dyn Gait) -> f64 {
+    if gait.description().flies() { 1.0 } else { SPEED }
+}
+
+fn optima(gait: &dyn Gait, criterion: Criterion) -> GaitResult {
+    let settings = Settings { starts: Some(4), seed: 1 };
+    let found = search(gait, criterion, speed(gait), &settings, &|_| {});
+    let mut result = GaitResult::new(gait, criterion, speed(gait), &found, settings.seed, || 0.0);
+    result.examine(gait);
+    result
+}
+
+/// A motion at which nothing in particular is optimal.
+fn motion(gait: &dyn Gait) -> Motion {
+    let settings = Settings { starts: Some(1), seed: 1 };
+    search(gait, Criterion::Torque, speed(gait), &settings, &|_| {}).optima[0].local.motion.clone()
+}
+
+#[test]
+fn a_robot_whose_keys_say_no_friction_is_the_robot_without_them() {
+    let none = Friction { damping: [0.0; 2], coulomb: [0.0; 2] };
+    let plain = Robot::read(concat!(env!("CARGO_MANIFEST_DIR"), "/model-spec")).unwrap();
+    for name in GAITS {
+        let [bare, zero] = [plain.gait(name).unwrap(), with(none).gait(name).unwrap()];
+        assert_eq!(format!("{:?}", bare.description()), format!("{:?}", zero.description()));
+        assert_eq!(format!("{:?}", bare.levers()), format!("{:?}", zero.levers()));
+    }
+    let cost = |robot: &Robot| optima(&robot.gait("trot").unwrap(), Criterion::Energy);
+    let [bare, zero] = [cost(&plain), cost(&with(none))].map(|r| (r.cost.unwrap().to_bits(), r.variables));
+    assert_eq!(bare.0, zero.0);
+    assert_eq!(format!("{:?}", bare.1), format!("{:?}", zero.1));
+}
+
+/// What friction turns into heat, W.
+fn heat(gait: &Interpreted, m: &Moment) -> f64 {
+    let joints = gait.description().joints.iter().zip(&m.qd);
+    joints.map(|(joint, rate)| joint.damping * rate * rate + joint.coulomb * rate.abs()).sum()
+}
+
+/// The robot's energy grows by what the motors give less what friction takes: feet at rest and gravity take none.
+#[test]
+fn energy_grows_by_the_motors_work_less_heat() {
+    let robot = with(GEARED);
+    for name in GAITS {
+        let gait = robot.gait(name).unwrap();
+        let d = gait.description();
+        let intervals = 1500;
+        let motion = motion(&gait);
+        let walk = Walk::even(&gait, &motion, intervals).unwrap();
+        for (k, phase) in walk.phases.iter().enumerate() {
+            let moments: Vec<&Moment> = walk.moments.iter().filter(|m| m.phase == k).collect();
+            let energy = |m: &Moment| {
+                let x = [&m.platform[0][..d.positions()], &m.q].concat();
+                let xd = [&m.platform[1][..d.positions()], &m.qd].concat();
+                let mut out = [0.0; 2];
+                gait.energy(&x, &xd, &mut out);
+                out[0] + out[1]
+            };
+            let step = phase.duration / intervals as f64;
+            let power = |m: &Moment| m.torque.iter().zip(&m.qd).map(|(torque, rate)| torque * rate).sum::<f64>();
+            // Trapezes: the kinks of c |q̇| leave errors of second order.
+            let over = |of: &dyn Fn(&Moment) -> f64| {
+                moments.windows(2).map(|m| 0.5 * step * (of(m[0]) + of(m[1]))).sum::<f64>()
+            };
+            let (work, heat) = (over(&power), over(&|m| heat(&gait, m)));
+            let gain = energy(moments[moments.len() - 1]) - energy(moments[0]);
+            let unit = Units::new(d).force() * Units::new(d).length;
+            assert!(heat > 1e-3 * unit, "{name}: {heat} of {unit}");
+            assert!((gain - work + heat).abs() < 1e-5 * unit, "{name} {k}: {gain} {work} {heat}");
+        }
+    }
+}
+
+#[test]
+fn motions_do_not_know_of_friction() {
+    let none = Friction { damping: [0.0; 2], coulomb: [0.0; 2] };
+    for name in GAITS {
+        let [bare, rubs] = [with(none).gait(name).unwrap(), with(GEARED).gait(name).unwrap()];
+        let motion = motion(&bare);
+        let walks = [&bare, &rubs].map(|gait| Walk::even(gait, &motion, 40).unwrap().moments);
+        for (a, b) in walks[0].iter().zip(&walks[1]) {
+            assert_eq!((&a.q, &a.qd, &a.qdd, a.force, a.platform), (&b.q, &b.qd, &b.qdd, b.force, b.platform));
+            for (j, joint) in rubs.description().joints.iter().enumerate() {
+                let friction = joint.damping * a.qd[j] + joint.coulomb * a.qd[j].signum();
+                assert!((b.torque[j] - a.torque[j] - friction).abs() < 1e-12, "{name} {j}");
+            }
+        }
+        // The real legs share it as equals do.
+        let lifts = [&bare, &rubs].map(|gait| Lift::even(gait, &motion, 20).unwrap());
+        for (a, b) in lifts[0].instants.iter().zip(&lifts[1].instants) {
+            assert_eq!(a.reactions.len(), b.reactions.len());
+            let [of_bare, of_rubbing] = [a, b].map(|i| i.efforts.virtual_legs.powers.iter().sum::<f64>());
+            let members: f64 = b.torque.iter().zip(b.posture.rates()).map(|(torque, rate)| torque * rate).sum();
+            assert!(of_rubbing > of_bare - 1e-12);
+            assert!((members - of_rubbing).abs() < 1e-6 * (1.0 + of_rubbing.abs()), "{name}: {members} {of_rubbing}");
+        }
+    }
+}
+
+/// Optima have a receipt from dynamics, friction and quadrature of the verifier's own, and a certificate.
+#[test]
+fn optima_verify_and_are_certified() {
+    let damped = with(Friction { coulomb: [0.0; 2], ..GEARED });
+    let dry = with(Friction { damping: [0.0; 2], ..GEARED });
+    for (kind, robot) in [("damped", damped), ("dry", dry), ("both", with(GEARED))] {
+        for name in GAITS {
+            let gait = robot.gait(name).unwrap();
+            for criterion in Criterion::ALL {
+                let result = optima(&gait, criterion);
+                let what = format!("{kind} {name} {criterion:?}: {}", result.message);
+                assert_eq!(result.status, Status::Optimal, "{what}");
+                let certified = result.certificate.as_ref().is_some_and(|c| c.is_certified());
+                assert!(certified, "{what} {:?}", result.certificate.map(|c| c.gaps));
+                assert!(result.optimality.as_ref().is_some_and(|o| o.residual() < 1e-5), "{what}");
+                let motion = result.motion().unwrap();
+                let receipt = verify(gait.description(), &motion, speed(&gait), 2001).unwrap();
+                let finer = verify(gait.description(), &motion, speed(&gait), 8001).unwrap();
+                let apart = |a: f64, b: f64| (a / b - 1.0).abs();
+                assert!(apart(receipt.costs.energy, finer.costs.energy) < 1e-7, "{what}");
+                assert!(apart(receipt.costs.torque, finer.costs.torque) < 1e-7, "{what}");
+                // What is split inside elements is integrated to the order of interpolation: finer meshes agree ever better.
+                let cycle = Cycle::resolving(&gait, criterion, speed(&gait), &theta(&motion)).unwrap();
+                let mut twice = cycle.twice_as_fine().unwrap();
+                twice.simulate(&theta(&motion)).unwrap();
+                let [coarse, fine] = [&cycle, &twice].map(|cycle| apart(cycle.costs().torque, finer.costs.torque));
+                assert!(coarse < 1e-4 && fine < 2e-6, "{what}: {coarse:e} {fine:e}");
+                assert!(apart(cycle.costs().energy, receipt.costs.energy) < 1e-3, "{what}");
+                // What is proven for all times holds where somebody looked: on both sides of a turn.
+                let proven = result.certificate.iter().flat_map(|c| &c.bounds);
+                for peak in &finer.peaks {
+                    let name = format!("torque of {}", peak.name);
+                    let bounds = proven.clone().filter(|bound| bound.constraint == name);
+                    let bound = bounds.map(|bound| bound.margin.unwrap()).fold(f64::INFINITY, f64::min);
+                    assert!(bound <= 1.0 - peak.torque / peak.max_torque + 1e-12, "{what} {name}: {bound}");
+                }
+                let samples = sample(gait.description(), &motion, 41).unwrap();
+                let walk = Walk::even(&gait, &motion, 40).unwrap();
+                for (s, m) in samples.iter().zip(&walk.moments) {
+                    let same = s.torques.iter().zip(&m.torque).all(|(a, b)| (a - b).abs() < 1e-4 * (1.0 + a.abs()));
+                    assert!(same, "{what} at {}: {:?} {:?}", s.t, s.torques, m.torque);
+                }
+            }
+        }
+    }
+}
+
+/// The least criterion of the same gait of another robot, near a known optimum.
+fn cost(gait: &dyn Gait, criterion: Criterion, near: &Local) -> f64 {
+    let local = Task { gait, criterion, speed: speed(gait) }.follow(&near.theta, &mut |_| Control::Continue);
+    assert!(local.status.is_optimal(), "{:?}", local.status);
+    local.costs.of(criterion)
+}
+
+#[test]
+fn slopes_in_friction_are_those_of_optima_of_other_robots() {
+    let robot = with(GEARED);
+    for name in GAITS {
+        let gait = robot.gait(name).unwrap();
+        for criterion in Criterion::ALL {
+            let settings = Settings { starts: Some(4), seed: 1 };
+            let local = search(&gait, criterion, speed(&gait), &settings, &|_| {}).optima[0].local.clone();
+            let found = sensitivities(&gait, criterion, speed(&gait), &local.motion).unwrap();
+            let best = local.costs.of(criterion);
+            for lever in ["haunch.damping", "knee.damping", "haunch.coulomb", "knee.coulomb"] {
+                let lever = format!("joints.{lever}");
+                let slope = found.slopes.iter().find(|s| s.parameter == lever).unwrap_or_else(|| panic!("no {lever}"));
+                let h = 1e-3 * slope.value;
+                let [above, below] = [h, -h].map(|by| {
+                    let other = robot.with(&lever, slope.value + by).unwrap();
+                    cost(&other.gait(name).unwrap(), criterion, &local)
+                });
+                let differences = (above - below) / (2.0 * h) * slope.value / best;
+                let elasticity = slope.elasticity;
+                let error = (elasticity - differences).abs();
+                assert!(
+                    error < 1e-4 * (1.0 + elasticity.abs()),
+                    "{name} {criterion:?} {lever}: {elasticity} {differences}"
+                );
+                assert!(elasticity.abs() > 1e-5, "{name} {criterion:?} {lever}: {elasticity}");
+            }
+        }
+    }
+}
