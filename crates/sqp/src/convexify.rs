@@ -26,7 +26,6 @@ pub(super) struct Convexifier {
     vectors: Vec<f64>,
     lambda: Vec<f64>,
     off: Vec<f64>,
-    column: Vec<f64>,
 }
 
 impl Convexifier {
@@ -38,7 +37,6 @@ impl Convexifier {
             vectors: vec![0.0; n * n],
             lambda: vec![0.0; n],
             off: vec![0.0; n],
-            column: vec![0.0; n],
         }
     }
 
@@ -107,11 +105,9 @@ impl Convexifier {
             let lambda = self.lambda[k];
             let wanted = lambda.abs().max(FLATTEST * size);
             if lambda < wanted {
-                for (c, row) in self.column.iter_mut().zip(self.vectors.chunks_exact(n)) {
-                    *c = row[k];
-                }
-                rank_one(wanted - lambda, &self.column, w);
-                rank_one(wanted - lambda, &self.column, &mut self.augmented);
+                let vector = &self.vectors[k * n..(k + 1) * n];
+                rank_one(wanted - lambda, vector, w);
+                rank_one(wanted - lambda, vector, &mut self.augmented);
             }
         }
         true

@@ -22,6 +22,14 @@ pub(super) fn axpy(alpha: f64, x: &[f64], y: &mut [f64]) {
     }
 }
 
+/// (a, b) ← (c·a + s·b, c·b − s·a).
+#[inline]
+pub(super) fn rotate(c: f64, s: f64, a: &mut [f64], b: &mut [f64]) {
+    for (a, b) in a.iter_mut().zip(b) {
+        (*a, *b) = (c * *a + s * *b, c * *b - s * *a);
+    }
+}
+
 /// ‖a‖∞; NaN counts as infinite.
 pub(super) fn max_abs(a: &[f64]) -> f64 {
     a.iter().fold(0.0, |worst: f64, a| if a.is_nan() { f64::INFINITY } else { worst.max(a.abs()) })

@@ -5,7 +5,7 @@
 //! The first q columns J₁ span the range of H⁻¹N, the others J₂ the null space of Nᵀ. Adding a normal is one Householder
 //! reflection of J₂, removing one a few Givens rotations: O(n²) each, and orthogonal, so errors do not pile up.
 
-use crate::dense::{axpy, cholesky, dot};
+use crate::dense::{axpy, cholesky, dot, rotate};
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct Factor {
@@ -147,9 +147,7 @@ impl Factor {
                 column[i + 1] = c * b - s * a;
             }
             let (first, second) = self.j[i * n..(i + 2) * n].split_at_mut(n);
-            for (a, b) in first.iter_mut().zip(second) {
-                (*a, *b) = (c * *a + s * *b, c * *b - s * *a);
-            }
+            rotate(c, s, first, second);
         }
     }
 }
