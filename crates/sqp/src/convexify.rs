@@ -19,7 +19,7 @@ const FLATTEST: f64 = 1e-10;
 
 #[derive(Clone, Debug)]
 pub(super) struct Convexifier {
-    l: Vec<f64>,
+    u: Vec<f64>,
     /// W + γAᵀA.
     augmented: Vec<f64>,
     active: Vec<usize>,
@@ -31,7 +31,7 @@ pub(super) struct Convexifier {
 impl Convexifier {
     pub(super) fn new(n: usize) -> Self {
         Self {
-            l: vec![0.0; n * n],
+            u: vec![0.0; n * n],
             augmented: vec![0.0; n * n],
             active: Vec::with_capacity(n),
             vectors: vec![0.0; n * n],
@@ -115,6 +115,6 @@ impl Convexifier {
 
     fn definite(&mut self, a: &[f64], n: usize, floor: f64) -> bool {
         // The smallest squared pivot bounds the smallest eigenvalue from above; near enough as a safeguard.
-        cholesky(a, n, &mut self.l) && (0..n).all(|i| self.l[i * n + i] * self.l[i * n + i] > floor)
+        cholesky(a, n, &mut self.u) && (0..n).all(|i| self.u[i * n + i] * self.u[i * n + i] > floor)
     }
 }

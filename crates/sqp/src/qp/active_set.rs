@@ -27,6 +27,8 @@ const VIOLATED: f64 = 1e-13;
 /// From this many rows on, each look at all of them yields up to `QUEUE` candidates.
 const MANY: usize = 100;
 const QUEUE: usize = 12;
+/// Rows whose values are found at once.
+const BLOCK: usize = 32;
 /// Residual of the optimality conditions at which the answer stands.
 const ACCEPT: f64 = 1e-9;
 
@@ -180,30 +182,15 @@ impl ActiveSet {
                 return Some((id, sign));
             }
         }
-        for id in 0..self.place.len() {
-            // Most constraints are in order, and cheaply seen to be.
-            let value = self.value(qp, id);
-            let in_order = match self.place[id] {
-                Place::Working => true,
-                Place::Off => value >= 0.0 && !self.equality(qp, id),
-                Place::Full => value <= 0.0,
-                Place::Empty => value >= 0.0,
-            };
-            if in_order {
-                continue;
-            }
-            if let Some((mut violation, _)) = self.contradiction(qp, id, reach) {
-                if self.equality(qp, id) && self.place[id] == Place::Off {
-                    violation = f64::MAX;
-                }
-                // Insertion into the few largest, the largest last; of equals the first comes first.
-                let position = self.queue.partition_point(|(other, _)| *other < violation);
-                if self.queue.len() < self.queue_length {
-                    self.queue.insert(position, (violation, id));
-                } else if position > 0 {
-                    self.queue[..position].rotate_left(1);
-                    self.queue[position - 1] = (violation, id);
-                }
+        for id in 0..2 * self.n {
+            self.look(qp, id, self.value(qp, id), reach);
+        }
+        let mut values = [0.0; BLOCK];
+        for first in (0..qp.len()).step_by(BLOCK) {
+            let values = &mut values[..BLOCK.min(qp.len() - first)];
+            qp.values(first, &self.d, values);
+            for (k, value) in values.iter().enumerate() {
+                self.look(qp, 2 * self.n + first + k, *value, reach);
             }
         }
         let (_, id) = self.queue.pop()?;
@@ -215,6 +202,33 @@ impl ActiveSet {
             }
         }
         Some((id, sign))
+    }
+
+    /// Queues a constraint with this value if it is one of those that contradict optimality most.
+    fn look(&mut self, qp: &Quadratic, id: usize, value: f64, reach: f64) {
+        // Most constraints are in order, and cheaply seen to be.
+        let in_order = match self.place[id] {
+            Place::Working => true,
+            Place::Off => value >= 0.0 && !self.equality(qp, id),
+            Place::Full => value <= 0.0,
+            Place::Empty => value >= 0.0,
+        };
+        if in_order {
+            return;
+        }
+        if let Some((mut violation, _)) = self.contradiction(qp, id, reach) {
+            if self.equality(qp, id) && self.place[id] == Place::Off {
+                violation = f64::MAX;
+            }
+            // Insertion into the few largest, the largest last; of equals the first comes first.
+            let position = self.queue.partition_point(|(other, _)| *other < violation);
+            if self.queue.len() < self.queue_length {
+                self.queue.insert(position, (violation, id));
+            } else if position > 0 {
+                self.queue[..position].rotate_left(1);
+                self.queue[position - 1] = (violation, id);
+            }
+        }
     }
 
     fn ascend(&mut self, qp: &Quadratic) -> Result<(), Failure> {
@@ -258,7 +272,8 @@ impl ActiveSet {
         if sign < 0.0 {
             self.w.iter_mut().for_each(|w| *w = -*w);
         }
-        self.factor.solve(&self.w, &mut self.change);
+        self.change.copy_from_slice(&self.w);
+        self.factor.solve(&mut self.change);
 
         // t₂: p holds as an equation. t₁: a working multiplier reaches one of its limits. t₃: that of p does.
         let full = if independent {
