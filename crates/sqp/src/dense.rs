@@ -37,6 +37,7 @@ pub(super) fn four(rows: &[f64], x: &[f64]) -> [f64; 4] {
 }
 
 /// out ← A·x, A by rows.
+#[inline]
 pub fn multiply(a: &[f64], x: &[f64], out: &mut [f64]) {
     let n = x.len();
     let (blocks, mut slots) = (a.chunks_exact(4 * n), out.chunks_exact_mut(4));
@@ -50,6 +51,7 @@ pub fn multiply(a: &[f64], x: &[f64], out: &mut [f64]) {
 }
 
 /// y ← y + Aᵀ·c, A by rows: what is read and written of y serves four of them.
+#[inline]
 pub fn combine(c: &[f64], a: &[f64], y: &mut [f64]) {
     let n = y.len();
     let (blocks, factors) = (a.chunks_exact(4 * n), c.chunks_exact(4));
@@ -67,7 +69,7 @@ pub fn combine(c: &[f64], a: &[f64], y: &mut [f64]) {
 
 /// y ← y + α·x.
 #[inline]
-pub(super) fn axpy(alpha: f64, x: &[f64], y: &mut [f64]) {
+pub fn axpy(alpha: f64, x: &[f64], y: &mut [f64]) {
     for (y, x) in y.iter_mut().zip(x) {
         *y += alpha * x;
     }

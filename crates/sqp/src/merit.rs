@@ -91,6 +91,12 @@ impl Merit {
         (tame && promise.reduction(self.low) > 0.0 && keeps(self.low), keeps(self.high))
     }
 
+    /// By which share of the promise going from (f, v) to (f⁺, v⁺) has missed it.
+    pub(super) fn missed(&self, promise: &Promise, from: (f64, f64), to: (f64, f64)) -> f64 {
+        let change = (from.0 - to.0) + self.high * (from.1 - to.1);
+        (change / promise.reduction(self.high) - 1.0).abs()
+    }
+
     /// Whether [`accepts`](Self::accepts) would say yes.
     pub(super) fn would_accept(&self, promise: &Promise, from: (f64, f64), to: (f64, f64)) -> bool {
         let (by_low, by_high) = self.keeps(promise, from, to);

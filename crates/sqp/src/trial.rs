@@ -17,8 +17,11 @@ use super::scaled::Point;
 /// Corrections of one step.
 const CORRECTIONS: usize = 2;
 /// Radius after a refused step, relative to the step; and its growth after a step that filled it.
-const SHRINK: f64 = 0.3;
+const SHRINK: f64 = 0.4;
 const GROW: f64 = 3.0;
+/// The same where the step has kept its promise but for this share: what a single bad place has shrunk is soon forgotten.
+const LEAP: f64 = 10.0;
+const KEPT: f64 = 0.2;
 
 impl<P: Problem> Run<'_, '_, P> {
     /// Tries `d`, then its corrections. With `true` the trial point is acceptable and linearized; with `false` the iterate
@@ -32,7 +35,8 @@ impl<P: Problem> Run<'_, '_, P> {
             let accepted = if self.accepts(from, to) { self.land() } else { self.bent(from) && self.correct(from) };
             if accepted {
                 if reach > 0.5 * self.radius {
-                    self.radius *= GROW;
+                    let missed = self.merit.missed(&self.promise, from, self.worth(&self.trial));
+                    self.radius *= if self.phase == Phase::Optimality && missed < KEPT { LEAP } else { GROW };
                 } else if reach < 0.1 * self.radius {
                     self.radius = f64::INFINITY;
                 }
