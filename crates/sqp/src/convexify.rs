@@ -20,7 +20,8 @@ const FLATTEST: f64 = 1e-10;
 #[derive(Clone, Debug)]
 pub(super) struct Convexifier {
     u: Vec<f64>,
-    /// W + γAᵀA.
+    /// AᵀA, and W + γAᵀA.
+    normal: Vec<f64>,
     augmented: Vec<f64>,
     active: Vec<usize>,
     vectors: Vec<f64>,
@@ -32,6 +33,7 @@ impl Convexifier {
     pub(super) fn new(n: usize) -> Self {
         Self {
             u: vec![0.0; n * n],
+            normal: vec![0.0; n * n],
             augmented: vec![0.0; n * n],
             active: Vec::with_capacity(n),
             vectors: vec![0.0; n * n],
@@ -55,6 +57,8 @@ impl Convexifier {
         self.active.clear();
         if augment {
             self.active.extend((0..qp.len()).filter(|i| qp.hints[2 * n + i] == Place::Working));
+            self.normal.fill(0.0);
+            self.active.iter().for_each(|i| rank_one(1.0, qp.row(*i), &mut self.normal));
         }
         let mut gamma = 0.0;
         let mut definite = false;
@@ -63,7 +67,7 @@ impl Convexifier {
                 break;
             }
             gamma = candidate * size;
-            self.augment(w, qp, gamma);
+            self.augment(w, gamma);
             let augmented = std::mem::take(&mut self.augmented);
             definite = self.definite(&augmented, n, floor);
             self.augmented = augmented;
@@ -71,7 +75,7 @@ impl Convexifier {
         if !definite {
             // A moderate γ keeps the eigenvectors of the two parts apart well enough.
             gamma = if self.active.is_empty() { 0.0 } else { 1e1 * size };
-            self.augment(w, qp, gamma);
+            self.augment(w, gamma);
             if !self.reflect(w, n, size) {
                 w.copy_from_slice(model);
                 self.augmented.copy_from_slice(model);
@@ -88,10 +92,10 @@ impl Convexifier {
     }
 
     /// W + γAᵀA.
-    fn augment(&mut self, w: &[f64], qp: &Quadratic, gamma: f64) {
+    fn augment(&mut self, w: &[f64], gamma: f64) {
         self.augmented.copy_from_slice(w);
-        for &i in &self.active {
-            rank_one(gamma, qp.row(i), &mut self.augmented);
+        if gamma > 0.0 {
+            axpy(gamma, &self.normal, &mut self.augmented);
         }
     }
 

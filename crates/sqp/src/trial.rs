@@ -17,7 +17,7 @@ use super::scaled::Point;
 /// Corrections of one step.
 const CORRECTIONS: usize = 2;
 /// Radius after a refused step, relative to the step; and its growth after a step that filled it.
-const SHRINK: f64 = 0.4;
+const SHRINK: f64 = 0.3;
 const GROW: f64 = 3.0;
 /// The same where the step has kept its promise but for this share: what a single bad place has shrunk is soon forgotten.
 const LEAP: f64 = 10.0;

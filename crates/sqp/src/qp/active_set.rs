@@ -182,8 +182,9 @@ impl ActiveSet {
                 return Some((id, sign));
             }
         }
-        for id in 0..2 * self.n {
-            self.look(qp, id, self.value(qp, id), reach);
+        for j in 0..self.n {
+            self.look(qp, j, self.d[j] - qp.lower[j], reach);
+            self.look(qp, self.n + j, qp.upper[j] - self.d[j], reach);
         }
         let mut values = [0.0; BLOCK];
         for first in (0..qp.len()).step_by(BLOCK) {
@@ -205,6 +206,7 @@ impl ActiveSet {
     }
 
     /// Queues a constraint with this value if it is one of those that contradict optimality most.
+    #[inline]
     fn look(&mut self, qp: &Quadratic, id: usize, value: f64, reach: f64) {
         // Most constraints are in order, and cheaply seen to be.
         let in_order = match self.place[id] {
@@ -213,9 +215,12 @@ impl ActiveSet {
             Place::Full => value <= 0.0,
             Place::Empty => value >= 0.0,
         };
-        if in_order {
-            return;
+        if !in_order {
+            self.queue(qp, id, reach);
         }
+    }
+
+    fn queue(&mut self, qp: &Quadratic, id: usize, reach: f64) {
         if let Some((mut violation, _)) = self.contradiction(qp, id, reach) {
             if self.equality(qp, id) && self.place[id] == Place::Off {
                 violation = f64::MAX;

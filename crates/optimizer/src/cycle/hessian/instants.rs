@@ -2,7 +2,7 @@
 //! gradients of quantities, and products of gradients over several nodes.
 
 use super::PhaseWork;
-use super::products::{add_lower, add_transpose, cross_duration, product, square};
+use super::products::{add_transpose, cross_duration, product, square};
 use crate::constraints::PathConstraint;
 use crate::cycle::Cycle;
 use crate::cycle::phase::Phase;
@@ -149,41 +149,78 @@ impl PhaseWork {
                 by_qd[nq + j] += 0.5 * qd_qd[ij];
             }
         }
-        // T multiplies β̇ where it is integrated: ω T β̇.
-        let (duration, beta) = (3 * nq, d.unactuated);
-        g[duration * width + nq + beta] += omega_beta;
         add_transpose(g, width);
 
-        // G U, then the lower triangle of Uᵀ G U, half its diagonal.
+        // All orders of coordinate i with all of coordinate j.
+        let block = |i: usize, j: usize| [0, 1, 2].map(|a| [0, 1, 2].map(|b| g[(a * nq + i) * width + b * nq + j]));
         let chain = p.instants.chain(d, &p.flow, node);
-        for (row, image) in g.chunks_exact(width).zip(self.images.chunks_exact_mut(np)) {
-            chain.pull(row, image);
-        }
-        let (images, h) = (&self.images, &mut self.h);
-        let of = |index: usize| [0, 1, 2].map(|order| &images[(order * nq + index) * np..][..np]);
-        let of_beta = of(beta);
-        for (r, row) in h.chunks_exact_mut(np).enumerate() {
-            add_lower(row, r, chain.unactuated.map(|by| by[r]), of_beta);
-            match r.checked_sub(layout.duration()) {
-                None => {
-                    let (j, parameter) = (r / layout.per_joint, r % layout.per_joint);
-                    add_lower(row, r, chain.basis[parameter], of(d.prescribed_index(j)));
+        let (basis, by_t, m, duration) = (chain.basis, chain.by_duration, layout.per_joint, layout.duration());
+        let h = &mut self.h;
+        // Prescribed coordinates with each other: sparse in the parameters.
+        let mut tt = 0.0;
+        for jj in 0..nt {
+            let i = d.prescribed_index(jj);
+            let mut by_duration = [0.0; 3];
+            for ll in 0..nt {
+                let block = block(i, d.prescribed_index(ll));
+                let part = times(&block, &by_t[ll]);
+                by_duration.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
+                if ll > jj {
+                    continue;
                 }
-                Some(direct) => {
-                    let own = &images[(3 * nq + direct) * np..][..np];
-                    axpy(1.0, &own[..r], &mut row[..r]);
-                    row[r] += 0.5 * own[r];
+                let share = if ll == jj { 0.5 } else { 1.0 };
+                for (image, column) in self.images.iter_mut().zip(basis) {
+                    *image = times(&block, column).map(|x| share * x);
+                }
+                for (r, row) in basis.iter().enumerate() {
+                    let slots = &mut h[layout.joint(jj, r) * np + layout.joint(ll, 0)..][..m];
+                    slots.iter_mut().zip(&self.images).for_each(|(slot, image)| *slot += dot3(row, image));
                 }
             }
-            if r == layout.duration() {
-                for (j, by) in chain.by_duration.iter().enumerate() {
-                    add_lower(row, r, *by, of(d.prescribed_index(j)));
-                }
+            tt += dot3(&by_t[jj], &by_duration);
+            for (r, row) in basis.iter().enumerate() {
+                h[layout.joint(jj, r) * np + duration] += dot3(row, &by_duration);
+            }
+        }
+        h[duration * np + duration] += 0.5 * tt;
+
+        // Unactuated coordinate: dense in the parameters.
+        let beta = d.unactuated;
+        self.v.iter_mut().for_each(|v| v.fill(0.0));
+        for jj in 0..nt {
+            // Symmetric: rows of the block are those of its transpose.
+            let rows = block(beta, d.prescribed_index(jj));
+            for (v, row) in self.v.iter_mut().zip(&rows) {
+                v[jj * m..(jj + 1) * m].iter_mut().zip(basis).for_each(|(slot, basis)| *slot = dot3(basis, row));
+                v[duration] += dot3(&by_t[jj], row);
+            }
+        }
+        for (v, row) in self.v.iter_mut().zip(&block(beta, beta)) {
+            for (x, by) in row.iter().zip(chain.unactuated).filter(|(x, _)| **x != 0.0) {
+                axpy(0.5 * x, by, v);
+            }
+        }
+        // T multiplies β̇ where it is integrated: ω T β̇.
+        self.v[1][duration] += omega_beta;
+        let ([v0, v1, v2], [s0, s1, s2]) = (&self.v, chain.unactuated);
+        for (r, row) in h.chunks_exact_mut(np).enumerate() {
+            let [x0, x1, x2] = [v0[r], v1[r], v2[r]];
+            for (((slot, s0), s1), s2) in row.iter_mut().zip(s0).zip(s1).zip(s2) {
+                *slot += x0 * s0 + x1 * s1 + x2 * s2;
+            }
+        }
+
+        // What depends on parameters directly, with all.
+        for (direct, row) in g[3 * nq * width..].chunks_exact_mut(width).enumerate() {
+            if row.iter().any(|x| *x != 0.0) {
+                row[3 * nq..].iter_mut().for_each(|x| *x *= 0.5);
+                chain.pull(row, &mut self.scratch);
+                axpy(1.0, &self.scratch, &mut h[(duration + direct) * np..][..np]);
             }
         }
         // ω T σ̇.
         p.flow.moment_gradient(node, t, &mut self.scratch);
-        cross_duration(h, &self.scratch, omega_sigma, layout.duration());
+        cross_duration(h, &self.scratch, omega_sigma, duration);
 
         // Second derivatives of Q, Q̇, Q̈ themselves, weighted with ∂L/∂(Q, Q̇, Q̈).
         for jj in 0..nt {
@@ -247,4 +284,13 @@ impl PhaseWork {
             g[3 * nq * width + 3 * nq + other] += second;
         });
     }
+}
+
+/// Second derivatives in the orders of one coordinate (rows) and of another (columns), times what moves the latter.
+fn times(block: &[[f64; 3]; 3], v: &[f64; 3]) -> [f64; 3] {
+    block.map(|row| dot3(&row, v))
+}
+
+fn dot3(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -46,8 +46,10 @@ struct PhaseWork {
     states: Vec<f64>,
     /// W in the state of each node.
     seconds: Vec<f64>,
-    /// G U at a node.
-    images: Vec<f64>,
+    /// One vector of local parameters per unactuated row of G.
+    v: [Vec<f64>; 3],
+    /// A block of G times each parameter's part in (Q, Q̇, Q̈).
+    images: Vec<[f64; 3]>,
     /// Gradient of this phase's part of L in the local parameters.
     gradient: Vec<f64>,
     /// Weight of the platform's x at the end, minus that at the start.
@@ -87,7 +89,8 @@ impl PhaseWork {
             weights: z(phase.linearized.len()),
             states: z(nodes * width),
             seconds: z(nodes * width * width),
-            images: z(width * np),
+            v: [z(np), z(np), z(np)],
+            images: vec![[0.0; 3]; phase.layout.per_joint],
             gradient: z(np),
             travel: 0.0,
             landing: 0.0,

@@ -26,15 +26,6 @@ pub(super) fn cross_duration(w: &mut [f64], a: &[f64], weight: f64, duration: us
     w[duration * a.len()..].iter_mut().zip(a).for_each(|(slot, a)| *slot += weight * a);
 }
 
-/// Adds `Σ factor · row` to row `r` of W as far as the diagonal, of which half.
-pub(super) fn add_lower(row: &mut [f64], r: usize, [x, y, z]: [f64; 3], rows: [&[f64]; 3]) {
-    let [a, b, c] = rows.map(|row| &row[..r]);
-    for (((slot, a), b), c) in row[..r].iter_mut().zip(a).zip(b).zip(c) {
-        *slot += x * a + y * b + z * c;
-    }
-    row[r] += 0.5 * (x * rows[0][r] + y * rows[1][r] + z * rows[2][r]);
-}
-
 /// `w + wᵀ` in the place of w.
 pub(super) fn add_transpose(w: &mut [f64], n: usize) {
     for i in 0..n {
