@@ -19,9 +19,6 @@ const CORRECTIONS: usize = 2;
 /// Radius after a refused step, relative to the step; and its growth after a step that filled it.
 const SHRINK: f64 = 0.3;
 const GROW: f64 = 3.0;
-/// The same where the step has kept its promise but for this share: what a single bad place has shrunk is soon forgotten.
-const LEAP: f64 = 10.0;
-const KEPT: f64 = 0.2;
 
 impl<P: Problem> Run<'_, '_, P> {
     /// Tries `d`, then its corrections. With `true` the trial point is acceptable and linearized; with `false` the iterate
@@ -32,11 +29,10 @@ impl<P: Problem> Run<'_, '_, P> {
         self.place_trial(false);
         if self.view.evaluate(&mut self.trial).is_ok() {
             let to = self.worth(&self.trial);
-            let accepted = if self.accepts(from, to) { self.land() } else { self.bent(from) && self.correct(from) };
+            let accepted = if self.accepts(from, to) { self.land() } else { to.1 > 0.0 && self.correct(from) };
             if accepted {
                 if reach > 0.5 * self.radius {
-                    let missed = self.merit.missed(&self.promise, from, self.worth(&self.trial));
-                    self.radius *= if self.phase == Phase::Optimality && missed < KEPT { LEAP } else { GROW };
+                    self.radius *= GROW;
                 } else if reach < 0.1 * self.radius {
                     self.radius = f64::INFINITY;
                 }
@@ -45,24 +41,6 @@ impl<P: Problem> Run<'_, '_, P> {
         }
         self.radius = SHRINK * reach;
         false
-    }
-
-    /// Whether the constraints' curvature along d is to blame for a refusal. Without it, the violation would be that of the
-    /// linearized constraints, and the objective, by the multipliers' word, lower by what the bends cost.
-    fn bent(&self, from: (f64, f64)) -> bool {
-        let to = self.worth(&self.trial);
-        if self.phase != Phase::Optimality {
-            return to.1 > 0.0;
-        }
-        let bends = |linear: &[f64], multipliers: &[f64], at: &[f64], trial: &[f64]| -> f64 {
-            let bend = |i: usize| if multipliers[i] == 0.0 { 0.0 } else { multipliers[i] * (trial[i] - at[i] - linear[i]) };
-            (0..multipliers.len()).map(bend).sum()
-        };
-        let (at, trial, linear) = (&self.point.values, &self.trial.values, &self.subproblem);
-        let price = bends(&linear.equality_directions, &self.lambda, &at.equalities, &trial.equalities)
-            + bends(&linear.inequality_directions, &self.mu, &at.inequalities, &trial.inequalities);
-        let straight = (to.0 - price, self.subproblem.linear_violation.min(to.1));
-        to.1 > 0.0 && self.merit.would_accept(&self.promise, from, straight)
     }
 
     fn correct(&mut self, from: (f64, f64)) -> bool {

@@ -174,8 +174,11 @@ impl Task<'_> {
         iterations += free.iterations;
         let theta = free.theta.clone();
         for share in SLOW {
+            if free.is_settled() {
+                break;
+            }
             let slow = self.slow(&theta, share);
-            if free.is_settled() || slow.is_empty() || slow == held {
+            if slow.is_empty() || slow == held {
                 continue;
             }
             held = slow;

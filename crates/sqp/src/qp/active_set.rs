@@ -206,7 +206,7 @@ impl ActiveSet {
     }
 
     /// Queues a constraint with this value if it is one of those that contradict optimality most.
-    #[inline]
+    #[inline(always)]
     fn look(&mut self, qp: &Quadratic, id: usize, value: f64, reach: f64) {
         // Most constraints are in order, and cheaply seen to be.
         let in_order = match self.place[id] {
@@ -244,16 +244,14 @@ impl ActiveSet {
         self.excused.clear();
         self.excused.resize(self.place.len(), false);
         while let Some((p, sign)) = self.pick(qp) {
-            if !self.excused[p] {
-                self.project(qp, p);
-                if !self.independent(DEPENDENT) {
-                    // Look again without the rounding that the steps have left in d; the row is picked again only if it is
-                    // violated by more than can be excused.
-                    self.excused[p] = true;
-                    self.stationarity(qp);
-                    self.correct(qp);
-                    continue;
-                }
+            self.project(qp, p);
+            if !self.excused[p] && !self.independent(DEPENDENT) {
+                // Look again without the rounding that the steps have left in d; the row is picked again only if it is
+                // violated by more than can be excused.
+                self.excused[p] = true;
+                self.stationarity(qp);
+                self.correct(qp);
+                continue;
             }
             // Raise (or lower) the multiplier of p until p holds, is dropped, or its limit is reached.
             loop {
@@ -264,15 +262,15 @@ impl ActiveSet {
                 if self.advance(qp, p, sign)? {
                     break;
                 }
+                self.project(qp, p);
             }
         }
         Ok(())
     }
 
-    /// One step of the dual ascent along the multiplier of `p`. `true` when `p` is settled.
+    /// One step of the dual ascent along the multiplier of `p`, whose projection is in `w`. `true` when `p` is settled.
     fn advance(&mut self, qp: &Quadratic, p: usize, sign: f64) -> Result<bool, Failure> {
         let q = self.factor.q;
-        self.project(qp, p);
         let independent = q < self.n && self.independent(INDEPENDENT);
         if sign < 0.0 {
             self.w.iter_mut().for_each(|w| *w = -*w);

@@ -2,7 +2,7 @@
 //! gradients of quantities, and products of gradients over several nodes.
 
 use super::PhaseWork;
-use super::products::{add_transpose, cross_duration, product, square};
+use super::products::{cross_duration, product, square};
 use crate::constraints::PathConstraint;
 use crate::cycle::Cycle;
 use crate::cycle::phase::Phase;
@@ -149,10 +149,11 @@ impl PhaseWork {
                 by_qd[nq + j] += 0.5 * qd_qd[ij];
             }
         }
-        add_transpose(g, width);
-
-        // All orders of coordinate i with all of coordinate j.
-        let block = |i: usize, j: usize| [0, 1, 2].map(|a| [0, 1, 2].map(|b| g[(a * nq + i) * width + b * nq + j]));
+        // All orders of coordinate i with all of coordinate j: G is W + Wᵀ.
+        let block = |i: usize, j: usize| {
+            let [i, j] = [i, j].map(|index| [index, nq + index, 2 * nq + index]);
+            i.map(|a| j.map(|b| g[a * width + b] + g[b * width + a]))
+        };
         let chain = p.instants.chain(d, &p.flow, node);
         let (basis, by_t, m, duration) = (chain.basis, chain.by_duration, layout.per_joint, layout.duration());
         let h = &mut self.h;
@@ -211,10 +212,12 @@ impl PhaseWork {
         }
 
         // What depends on parameters directly, with all.
-        for (direct, row) in g[3 * nq * width..].chunks_exact_mut(width).enumerate() {
+        for direct in 0..layout.direct() {
+            let own = 3 * nq + direct;
+            let mut row = SmallVec::<[f64; 32]>::from_slice(&g[own * width..][..width]);
+            row[..3 * nq].iter_mut().enumerate().for_each(|(k, x)| *x += g[k * width + own]);
             if row.iter().any(|x| *x != 0.0) {
-                row[3 * nq..].iter_mut().for_each(|x| *x *= 0.5);
-                chain.pull(row, &mut self.scratch);
+                chain.pull(&row, &mut self.scratch);
                 axpy(1.0, &self.scratch, &mut h[(duration + direct) * np..][..np]);
             }
         }
