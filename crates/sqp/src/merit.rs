@@ -78,8 +78,8 @@ impl Merit {
         self.high = self.high.max(penalty);
     }
 
-    /// Whether going from (f, v) to (f⁺, v⁺) keeps enough of the promise.
-    pub(super) fn accepts(&mut self, promise: &Promise, from: (f64, f64), to: (f64, f64)) -> bool {
+    /// Whether going from (f, v) to (f⁺, v⁺) keeps enough of the promise, by the low end of the penalties and by the high one.
+    fn keeps(&self, promise: &Promise, from: (f64, f64), to: (f64, f64)) -> (bool, bool) {
         let keeps = |penalty: f64| {
             let promised = promise.reduction(penalty);
             // Changes below the functions' own rounding must not block the last steps.
@@ -87,13 +87,24 @@ impl Merit {
             let change = (to.0 - from.0) + penalty * (to.1 - from.1);
             promised >= -rounding && change <= -SUFFICIENT * promised.max(0.0) + rounding
         };
+        let tame = to.1 <= self.ceiling.max(from.1);
+        (tame && promise.reduction(self.low) > 0.0 && keeps(self.low), keeps(self.high))
+    }
+
+    /// Whether [`accepts`](Self::accepts) would say yes.
+    pub(super) fn would_accept(&self, promise: &Promise, from: (f64, f64), to: (f64, f64)) -> bool {
+        let (by_low, by_high) = self.keeps(promise, from, to);
+        by_low || by_high
+    }
+
+    /// Whether going from (f, v) to (f⁺, v⁺) keeps enough of the promise.
+    pub(super) fn accepts(&mut self, promise: &Promise, from: (f64, f64), to: (f64, f64)) -> bool {
         if to.1 > RUNAWAY * self.ceiling.max(1.0) && to.1 > from.1 {
             // The objective has no floor out there, and the penalty is too low to provide one.
             self.raise(10.0 * self.high);
             return false;
         }
-        let tame = to.1 <= self.ceiling.max(from.1);
-        let (by_low, by_high) = (tame && promise.reduction(self.low) > 0.0 && keeps(self.low), keeps(self.high));
+        let (by_low, by_high) = self.keeps(promise, from, to);
         if by_high && !by_low && to.1 < from.1 {
             // The price of violation at which this step breaks even.
             let price = (to.0 - from.0) / (from.1 - to.1);

@@ -2,7 +2,7 @@
 //!
 //! Near a solution the full step d may increase both f and v through the constraints' curvature alone (the Maratos effect). The
 //! correction solves the subproblem again with c(z + d) − J·d in the place of c(z); the corrected step is longer by O(‖d‖²) only,
-//! so the fast local convergence survives.
+//! so the fast local convergence survives. Where it is not the bends that are to blame, a kink of f say, no correction is tried.
 //!
 //! A radius (a box around the iterate, in the subproblem's bounds) instead of a search along d: a new subproblem costs
 //! microseconds and points somewhere better, where a shorter d costs an evaluation and points to the same bend.
@@ -29,7 +29,7 @@ impl<P: Problem> Run<'_, '_, P> {
         self.place_trial(false);
         if self.view.evaluate(&mut self.trial).is_ok() {
             let to = self.worth(&self.trial);
-            let accepted = if self.accepts(from, to) { self.land() } else { to.1 > 0.0 && self.correct(from) };
+            let accepted = if self.accepts(from, to) { self.land() } else { self.bent(from) && self.correct(from) };
             if accepted {
                 if reach > 0.5 * self.radius {
                     self.radius *= GROW;
@@ -41,6 +41,25 @@ impl<P: Problem> Run<'_, '_, P> {
         }
         self.radius = SHRINK * reach;
         false
+    }
+
+    /// Whether the constraints' curvature along d is to blame for a refusal. Without it, the violation would be that of the
+    /// linearized constraints, and the objective, by the multipliers' word, lower by what the bends cost.
+    fn bent(&self, from: (f64, f64)) -> bool {
+        let to = self.worth(&self.trial);
+        if self.phase != Phase::Optimality {
+            return to.1 > 0.0;
+        }
+        let bends = |linear: &[f64], multipliers: &[f64], at: &[f64], trial: &[f64]| -> f64 {
+            let bend =
+                |i: usize| if multipliers[i] == 0.0 { 0.0 } else { multipliers[i] * (trial[i] - at[i] - linear[i]) };
+            (0..multipliers.len()).map(bend).sum()
+        };
+        let (at, trial, linear) = (&self.point.values, &self.trial.values, &self.subproblem);
+        let price = bends(&linear.equality_directions, &self.lambda, &at.equalities, &trial.equalities)
+            + bends(&linear.inequality_directions, &self.mu, &at.inequalities, &trial.inequalities);
+        let straight = (to.0 - price, self.subproblem.linear_violation.min(to.1));
+        to.1 > 0.0 && self.merit.would_accept(&self.promise, from, straight)
     }
 
     fn correct(&mut self, from: (f64, f64)) -> bool {

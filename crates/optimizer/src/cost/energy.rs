@@ -55,7 +55,9 @@ fn absolute_weights(mesh: &Mesh, values: &[f64; NODES]) -> ([f64; NODES], Roots)
     let lobatto = &mesh.lobatto;
     let coefficients = lobatto.interpolate(values);
     let mut found = Roots::new();
-    roots(&coefficients, &mut found);
+    if may_change_sign(&coefficients) {
+        roots(&coefficients, &mut found);
+    }
     let mut weights = [0.0; NODES];
     let mut before = [0.0; NODES];
     let mut from = 0.0;
@@ -69,6 +71,14 @@ fn absolute_weights(mesh: &Mesh, values: &[f64; NODES]) -> ([f64; NODES], Roots)
         from = to;
     }
     (weights, found)
+}
+
+/// A polynomial whose Bernstein coefficients on [0, 1] agree in sign has no root there.
+fn may_change_sign(c: &[f64; NODES]) -> bool {
+    let [c0, c1, c2, c3, c4] = *c;
+    let bernstein =
+        [c0, c0 + c1 / 4.0, c0 + c1 / 2.0 + c2 / 6.0, c0 + 0.75 * c1 + 0.5 * c2 + 0.25 * c3, c0 + c1 + c2 + c3 + c4];
+    bernstein.iter().any(|b| *b > 0.0) && bernstein.iter().any(|b| *b < 0.0)
 }
 
 #[cfg(test)]

@@ -51,8 +51,7 @@ impl<'a> Chain<'a> {
         let (nq, beta) = (self.d.orientations(), self.d.unactuated);
         let (prescribed, direct) = out.split_at_mut(self.layout.duration());
         direct.copy_from_slice(&state[3 * nq..]);
-        let [q, rest @ ..] = [&state[..nq], &state[nq..2 * nq], &state[2 * nq..3 * nq]];
-        let [qd, qdd] = rest;
+        let [q, qd, qdd] = [0, 1, 2].map(|order| &state[order * nq..(order + 1) * nq]);
         for (j, out) in prescribed.chunks_exact_mut(self.basis.len()).enumerate() {
             let index = self.d.prescribed_index(j);
             let (a, b, c) = (q[index], qd[index], qdd[index]);
