@@ -19,26 +19,26 @@ const FLATTEST: f64 = 1e-10;
 
 #[derive(Clone, Debug)]
 pub(super) struct Convexifier {
-    l: Vec<f64>,
-    /// W + γAᵀA.
+    u: Vec<f64>,
+    /// AᵀA, and W + γAᵀA.
+    normal: Vec<f64>,
     augmented: Vec<f64>,
     active: Vec<usize>,
     vectors: Vec<f64>,
     lambda: Vec<f64>,
     off: Vec<f64>,
-    column: Vec<f64>,
 }
 
 impl Convexifier {
     pub(super) fn new(n: usize) -> Self {
         Self {
-            l: vec![0.0; n * n],
+            u: vec![0.0; n * n],
+            normal: vec![0.0; n * n],
             augmented: vec![0.0; n * n],
             active: Vec::with_capacity(n),
             vectors: vec![0.0; n * n],
             lambda: vec![0.0; n],
             off: vec![0.0; n],
-            column: vec![0.0; n],
         }
     }
 
@@ -57,6 +57,8 @@ impl Convexifier {
         self.active.clear();
         if augment {
             self.active.extend((0..qp.len()).filter(|i| qp.hints[2 * n + i] == Place::Working));
+            self.normal.fill(0.0);
+            self.active.iter().for_each(|i| rank_one(1.0, qp.row(*i), &mut self.normal));
         }
         let mut gamma = 0.0;
         let mut definite = false;
@@ -65,7 +67,7 @@ impl Convexifier {
                 break;
             }
             gamma = candidate * size;
-            self.augment(w, qp, gamma);
+            self.augment(w, gamma);
             let augmented = std::mem::take(&mut self.augmented);
             definite = self.definite(&augmented, n, floor);
             self.augmented = augmented;
@@ -73,7 +75,7 @@ impl Convexifier {
         if !definite {
             // A moderate γ keeps the eigenvectors of the two parts apart well enough.
             gamma = if self.active.is_empty() { 0.0 } else { 1e1 * size };
-            self.augment(w, qp, gamma);
+            self.augment(w, gamma);
             if !self.reflect(w, n, size) {
                 w.copy_from_slice(model);
                 self.augmented.copy_from_slice(model);
@@ -90,10 +92,10 @@ impl Convexifier {
     }
 
     /// W + γAᵀA.
-    fn augment(&mut self, w: &[f64], qp: &Quadratic, gamma: f64) {
+    fn augment(&mut self, w: &[f64], gamma: f64) {
         self.augmented.copy_from_slice(w);
-        for &i in &self.active {
-            rank_one(gamma, qp.row(i), &mut self.augmented);
+        if gamma > 0.0 {
+            axpy(gamma, &self.normal, &mut self.augmented);
         }
     }
 
@@ -107,11 +109,9 @@ impl Convexifier {
             let lambda = self.lambda[k];
             let wanted = lambda.abs().max(FLATTEST * size);
             if lambda < wanted {
-                for (c, row) in self.column.iter_mut().zip(self.vectors.chunks_exact(n)) {
-                    *c = row[k];
-                }
-                rank_one(wanted - lambda, &self.column, w);
-                rank_one(wanted - lambda, &self.column, &mut self.augmented);
+                let vector = &self.vectors[k * n..(k + 1) * n];
+                rank_one(wanted - lambda, vector, w);
+                rank_one(wanted - lambda, vector, &mut self.augmented);
             }
         }
         true
@@ -119,6 +119,6 @@ impl Convexifier {
 
     fn definite(&mut self, a: &[f64], n: usize, floor: f64) -> bool {
         // The smallest squared pivot bounds the smallest eigenvalue from above; near enough as a safeguard.
-        cholesky(a, n, &mut self.l) && (0..n).all(|i| self.l[i * n + i] * self.l[i * n + i] > floor)
+        cholesky(a, n, &mut self.u) && (0..n).all(|i| self.u[i * n + i] * self.u[i * n + i] > floor)
     }
 }

@@ -2,8 +2,10 @@
 //! (Bowdler, Martin, Reinsch & Wilkinson 1968; the arrangement is that of EISPACK's tred2 and tql2). Square roots are the only
 //! functions it needs, so the bits are the same everywhere.
 
-/// Decomposes A = V·diag(λ)·Vᵀ in place: `v` comes in as A (n×n, by rows) and leaves with the eigenvectors as its columns.
-/// `false` if the iteration does not converge (only for numbers that are not finite).
+use super::dense::{axpy, dot, rotate};
+
+/// Decomposes A = V·diag(λ)·Vᵀ in place: `v` comes in as A (n×n) and leaves with the eigenvectors as its rows, so that all loops
+/// run along rows. `false` if the iteration does not converge (only for numbers that are not finite).
 pub(super) fn symmetric(v: &mut [f64], lambda: &mut [f64], off: &mut [f64]) -> bool {
     let n = lambda.len();
     tridiagonalize(v, lambda, off, n);
@@ -17,75 +19,60 @@ fn tridiagonalize(v: &mut [f64], d: &mut [f64], e: &mut [f64], n: usize) {
         let mut h = 0.0;
         if scale == 0.0 {
             e[i] = d[i - 1];
-            for j in 0..i {
-                d[j] = v[(i - 1) * n + j];
-                v[i * n + j] = 0.0;
-                v[j * n + i] = 0.0;
-            }
+            v[i * n..i * n + i].fill(0.0);
         } else {
             for d in &mut d[..i] {
                 *d /= scale;
-                h += *d * *d;
             }
+            h += dot(&d[..i], &d[..i]);
             let f = d[i - 1];
             let g = if f > 0.0 { -h.sqrt() } else { h.sqrt() };
             e[i] = scale * g;
             h -= f * g;
             d[i - 1] = f - g;
-            e[..i].fill(0.0);
+            let (d, e) = (&d[..i], &mut e[..i]);
+            v[i * n..i * n + i].copy_from_slice(d);
+            // e = A·d / h, from the upper triangle.
+            e.fill(0.0);
             for j in 0..i {
-                let f = d[j];
-                v[j * n + i] = f;
-                let mut g = e[j] + v[j * n + j] * f;
-                for k in j + 1..i {
-                    g += v[k * n + j] * d[k];
-                    e[k] += v[k * n + j] * f;
-                }
-                e[j] = g;
+                let row = &v[j * n + j..j * n + i];
+                e[j] += dot(row, &d[j..]);
+                axpy(d[j], &row[1..], &mut e[j + 1..]);
             }
-            let mut f = 0.0;
-            for j in 0..i {
-                e[j] /= h;
-                f += e[j] * d[j];
-            }
-            let hh = f / (h + h);
-            for j in 0..i {
-                e[j] -= hh * d[j];
-            }
+            e.iter_mut().for_each(|e| *e /= h);
+            let hh = dot(e, d) / (h + h);
+            axpy(-hh, d, e);
             for j in 0..i {
                 let (f, g) = (d[j], e[j]);
-                for k in j..i {
-                    v[k * n + j] -= f * e[k] + g * d[k];
+                for ((v, e), d) in v[j * n + j..j * n + i].iter_mut().zip(&e[j..]).zip(&d[j..]) {
+                    *v -= f * e + g * d;
                 }
-                d[j] = v[(i - 1) * n + j];
-                v[i * n + j] = 0.0;
             }
+        }
+        for j in 0..i {
+            d[j] = v[j * n + i - 1];
+            v[j * n + i] = 0.0;
         }
         d[i] = h;
     }
     // Accumulate the reflections.
     for i in 0..n - 1 {
-        v[(n - 1) * n + i] = v[i * n + i];
+        v[i * n + n - 1] = v[i * n + i];
         v[i * n + i] = 1.0;
         let h = d[i + 1];
+        let (done, reflection) = v.split_at_mut((i + 1) * n);
+        let reflection = &mut reflection[..=i];
         if h != 0.0 {
-            for k in 0..=i {
-                d[k] = v[k * n + i + 1] / h;
-            }
-            for j in 0..=i {
-                let g: f64 = (0..=i).map(|k| v[k * n + i + 1] * v[k * n + j]).sum();
-                for k in 0..=i {
-                    v[k * n + j] -= g * d[k];
-                }
+            for row in done.chunks_exact_mut(n) {
+                let row = &mut row[..=i];
+                axpy(-dot(reflection, row) / h, reflection, row);
             }
         }
-        for k in 0..=i {
-            v[k * n + i + 1] = 0.0;
-        }
+        reflection.fill(0.0);
     }
     for j in 0..n {
-        d[j] = v[(n - 1) * n + j];
-        v[(n - 1) * n + j] = 0.0;
+        d[j] = v[j * n + n - 1];
+        v[j * n + n - 1] = 0.0;
     }
     v[n * n - 1] = 1.0;
     e[0] = 0.0;
@@ -126,11 +113,8 @@ fn diagonalize(v: &mut [f64], d: &mut [f64], e: &mut [f64], n: usize) -> bool {
                 p = s * r;
                 d[i + 1] = g + p;
                 g = c * r - b;
-                for row in v.chunks_exact_mut(n) {
-                    let f = row[i + 1];
-                    row[i + 1] = s * row[i] + c * f;
-                    row[i] = c * row[i] - s * f;
-                }
+                let (first, second) = v[i * n..(i + 2) * n].split_at_mut(n);
+                rotate(c, -s, first, second);
             }
             if interrupted {
                 continue;
@@ -167,7 +151,7 @@ mod tests {
             assert!(symmetric(&mut v, &mut lambda, &mut off));
             for i in 0..n {
                 for j in 0..n {
-                    let product: f64 = (0..n).map(|k| v[i * n + k] * lambda[k] * v[j * n + k]).sum();
+                    let product: f64 = (0..n).map(|k| v[k * n + i] * lambda[k] * v[k * n + j]).sum();
                     assert!((product - a[i * n + j]).abs() < 1e-12, "n {n}");
                 }
             }

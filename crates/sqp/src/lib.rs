@@ -65,7 +65,7 @@ mod screening;
 mod status;
 mod trial;
 
-pub use dense::dot;
+pub use dense::{axpy, combine, dot, multiply};
 pub use minimize::minimize;
 pub use multipliers::{Multipliers, multipliers};
 pub use objective::{Objective, Redirected};

@@ -6,9 +6,10 @@
 //! centre's parabola. Equalities: β̇ and β close the cycle (eq. 23, 24; the former as σ), feet land where they shall, and the
 //! mean speed is the given one.
 //!
-//! `phase` is one phase, `crossing` how it ends, `dip` a constraint between its nodes, `still` a joint that it holds, `rows` which
+//! `phase` is one phase, `by_theta` how its parameters depend on Θ, `crossing` how it ends, `dip` a constraint between its nodes, `still` a joint that it holds, `rows` which
 //! equation and which limit is which row, `problem` the nonlinear program, `hessian` its second derivatives.
 
+mod by_theta;
 mod crossing;
 mod dip;
 mod halt;
@@ -233,7 +234,7 @@ impl<'a> Cycle<'a> {
     pub fn finer(&self) -> Option<Cycle<'a>> {
         let resolution = RESOLUTION * (2.0 * self.froude()).min(1.0);
         let coarse = |p: &Phase| p.mesh_error(self.gait, &self.units).is_ok_and(|error| error > resolution);
-        self.twice_as_fine().filter(|_| self.phases.iter().any(coarse))
+        if self.phases.iter().any(coarse) { self.twice_as_fine() } else { None }
     }
 
     /// The problem with twice as many elements, if there may be so many.

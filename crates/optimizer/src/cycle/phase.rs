@@ -1,6 +1,7 @@
 //! One phase of the gait, and how its parameters depend on Θ.
 
 use super::Variables;
+use super::by_theta::ByTheta;
 use super::crossing::Crossing;
 use super::dip::{Dip, Lowest};
 use crate::constraints::{ImpactConstraints, PathConstraint, path_constraints};
@@ -11,6 +12,8 @@ use crate::lgl::NODES;
 use piaffe_model::shape::ModeShapes;
 use piaffe_model::units::Units;
 use piaffe_model::{Description, FORWARD, Gait, Mode, UP};
+use piaffe_sqp::axpy;
+use smallvec::SmallVec;
 
 /// State of a phase: what the last simulation left, and the derivatives of the last linearization.
 pub struct Phase {
@@ -50,10 +53,13 @@ pub struct Phase {
     /// Forward travel, m.
     pub travel: f64,
 
-    /// ∂parameters/∂Θ, one row per parameter.
-    pub by_theta: Vec<f64>,
+    /// ∂parameters/∂Θ, and as a table in which it is put together, one row per parameter.
+    pub by_theta: ByTheta,
+    table: Vec<f64>,
     /// Quantities at the linearized point (a trial point must not disturb its derivatives).
     pub linearized: Vec<f64>,
+    /// Gradients of the criterion's integral and of the travel in the local parameters.
+    pub cost_p: Vec<f64>,
     pub travel_p: Vec<f64>,
     /// ∂(q_start, q̇_start)/∂Θ, one row each.
     pub start_by_theta: Vec<f64>,
@@ -95,7 +101,9 @@ impl Phase {
             momentum_start: shapes.momentum.zeros(),
             momentum_end: shapes.momentum.zeros(),
             travel: 0.0,
-            by_theta: z(layout.len() * n),
+            by_theta: ByTheta::new(layout.len(), n),
+            table: z(layout.len() * n),
+            cost_p: z(layout.len()),
             travel_p: z(layout.len()),
             start_by_theta: z(2 * nq * n),
             scratch: z(layout.len()),
@@ -228,41 +236,42 @@ impl Phase {
         let (n, own) = (variables.total(), self.index * variables.per_phase());
         let nq = d.orientations();
         let layout = self.layout;
-        self.by_theta.fill(0.0);
+        self.table.fill(0.0);
         let row = |local: usize| local * n..(local + 1) * n;
         for j in 0..layout.prescribed {
             let index = d.prescribed_index(j);
-            self.by_theta[row(layout.joint(j, 0))].copy_from_slice(&self.start_by_theta[row(index)]);
-            self.by_theta[row(layout.joint(j, 1))].copy_from_slice(&self.start_by_theta[row(nq + index)]);
+            self.table[row(layout.joint(j, 0))].copy_from_slice(&self.start_by_theta[row(index)]);
+            self.table[row(layout.joint(j, 1))].copy_from_slice(&self.start_by_theta[row(nq + index)]);
             for i in 0..layout.per_joint - 4 {
-                self.by_theta[layout.joint(j, 2 + i) * n + own + variables.interior(i, j)] = 1.0;
+                self.table[layout.joint(j, 2 + i) * n + own + variables.interior(i, j)] = 1.0;
             }
-            self.by_theta[layout.joint(j, layout.per_joint - 2) * n + own + variables.q(index)] = 1.0;
-            self.by_theta[layout.joint(j, layout.per_joint - 1) * n + own + variables.qd(index)] = 1.0;
+            self.table[layout.joint(j, layout.per_joint - 2) * n + own + variables.q(index)] = 1.0;
+            self.table[layout.joint(j, layout.per_joint - 1) * n + own + variables.qd(index)] = 1.0;
         }
-        self.by_theta[layout.duration() * n + own + variables.duration()] = 1.0;
-        self.by_theta[row(layout.beta())].copy_from_slice(&self.start_by_theta[row(d.unactuated)]);
+        self.table[layout.duration() * n + own + variables.duration()] = 1.0;
+        self.table[row(layout.beta())].copy_from_slice(&self.start_by_theta[row(d.unactuated)]);
         for (k, gradient) in self.shapes.momentum.sigma_w.of(&self.momentum_start).iter().enumerate() {
-            for (s, c) in self.by_theta[row(layout.sigma())].iter_mut().zip(&self.start_by_theta[row(k)]) {
+            for (s, c) in self.table[row(layout.sigma())].iter_mut().zip(&self.start_by_theta[row(k)]) {
                 *s += gradient * c;
             }
         }
         if let Some((takeoff, first)) = before.filter(|_| layout.flies()) {
             for (k, gradient) in takeoff.height_gradient().iter().enumerate() {
-                self.by_theta[layout.centre_height() * n + first + variables.q(k)] = *gradient;
+                self.table[layout.centre_height() * n + first + variables.q(k)] = *gradient;
             }
             for c in [FORWARD, UP] {
                 let (by_q, by_qd) = takeoff.velocity_gradient(c).split_at(nq);
                 for k in 0..nq {
-                    let row = &mut self.by_theta[row(layout.centre_velocity(c))];
+                    let row = &mut self.table[row(layout.centre_velocity(c))];
                     row[first + variables.q(k)] = by_q[k];
                     row[first + variables.qd(k)] = by_qd[k];
                 }
             }
         }
         for (k, at) in layout.others() {
-            self.by_theta[at * n + k * variables.per_phase() + variables.duration()] = 1.0;
+            self.table[at * n + k * variables.per_phase() + variables.duration()] = 1.0;
         }
+        self.by_theta.set(&self.table);
     }
 
     /// The parabola's parameters of a landing: what the mass centre's velocity before it is as a function of Θ.
@@ -272,25 +281,48 @@ impl Phase {
         }
         for c in [FORWARD, UP] {
             let (velocity, duration) = (self.layout.centre_velocity(c) * n, self.layout.duration() * n);
-            let by_theta = &self.by_theta;
+            let table = &self.table;
             self.crossing.set_centre_gradient(c, |row| {
-                row.copy_from_slice(&by_theta[velocity..velocity + n]);
+                row.copy_from_slice(&table[velocity..velocity + n]);
                 if c == UP {
-                    row.iter_mut().zip(&by_theta[duration..]).for_each(|(slot, by)| *slot -= d.gravity * by);
+                    row.iter_mut().zip(&table[duration..]).for_each(|(slot, by)| *slot -= d.gravity * by);
                 }
             });
         }
     }
 
-    /// `row += scale · localᵀ ∂parameters/∂Θ`.
-    pub fn project(&self, local: &[f64], scale: f64, row: &mut [f64]) {
-        for (g, by) in local.iter().zip(self.by_theta.chunks(row.len())) {
-            let factor = scale * g;
-            if factor != 0.0 {
-                for (r, b) in row.iter_mut().zip(by) {
-                    *r += factor * b;
-                }
-            }
-        }
+    /// A gradient in the local parameters, of nothing yet.
+    pub fn no_parameters(&self) -> SmallVec<[f64; 64]> {
+        SmallVec::from_elem(0.0, self.layout.len())
+    }
+
+    /// Adds to a gradient in the local parameters one in the state of a node.
+    pub fn pull(&self, d: &Description, node: usize, state: &[f64], local: &mut [f64]) {
+        let mut pulled = self.no_parameters();
+        self.instants.chain(d, &self.flow, node).pull(state, &mut pulled);
+        axpy(1.0, &pulled, local);
+    }
+
+    /// Adds `scale` times the gradient of a quantity at a node.
+    pub fn add_quantity(&self, d: &Description, node: usize, quantity: usize, scale: f64, local: &mut [f64]) {
+        let mut pulled = self.no_parameters();
+        self.instants.chain(d, &self.flow, node).pull(self.instants.gradient(node, quantity), &mut pulled);
+        axpy(scale, &pulled, local);
+    }
+
+    /// Adds `scale` times the gradient of a path constraint at a node.
+    pub fn add_constraint(
+        &self,
+        d: &Description,
+        node: usize,
+        constraint: &PathConstraint,
+        scale: f64,
+        local: &mut [f64],
+    ) {
+        let mut state = SmallVec::<[f64; 32]>::from_elem(0.0, self.instants.width());
+        constraint.partials(self.linearized(node), |quantity, partial| {
+            axpy(scale * partial, self.instants.gradient(node, quantity), &mut state);
+        });
+        self.pull(d, node, &state, local);
     }
 }

@@ -5,15 +5,16 @@
 //! points in between do not disturb it.
 
 use super::dip::Dip;
+use super::hessian::Workspace;
 use super::rows::{Equation, Row};
 use super::{Cycle, Label};
 use crate::constraints::{ImpactConstraints, PathConstraint};
 use crate::cost::Drive;
-use crate::lgl::NODES;
 use piaffe_model::shape::Block;
 use piaffe_model::{Description, Limit};
 use piaffe_sqp as sqp;
-use piaffe_sqp::{Problem, Undefined, Values, dot};
+use piaffe_sqp::{Problem, Undefined, Values, axpy, multiply};
+use smallvec::SmallVec;
 
 /// Where an impact's change of angular momentum about the transverse axis stands among its results.
 pub fn pitch(d: &Description) -> Block {
@@ -199,21 +200,26 @@ impl Cycle<'_> {
         self.cost_gradient.fill(0.0);
         self.duration_gradient.fill(0.0);
         self.travel_gradient.fill(0.0);
-        let m = self.variables.per_phase();
-        let local = &mut self.workspace.local;
-        for (k, p) in self.phases.iter().enumerate() {
-            let t = p.duration();
+        let (d, m) = (self.gait.description(), self.variables.per_phase());
+        let Workspace { local, states, .. } = &mut self.workspace;
+        for (k, p) in self.phases.iter_mut().enumerate() {
+            let (t, width) = (p.duration(), p.instants.width());
+            let states = &mut states[..p.mesh.nodes.len() * width];
+            states.fill(0.0);
+            for (node, quantity, partial) in &p.cost.partials {
+                axpy(*partial, p.instants.gradient(*node, *quantity), &mut states[node * width..][..width]);
+            }
             let local = &mut local[..p.layout.len()];
             local.fill(0.0);
-            for (node, quantity, partial) in &p.cost.partials {
-                for (l, g) in local.iter_mut().zip(p.instants.gradient(*node, *quantity)) {
-                    *l += t * partial * g;
-                }
+            for (node, state) in states.chunks(width).enumerate() {
+                p.pull(d, node, state, local);
             }
+            p.cost_p.copy_from_slice(local);
+            local.iter_mut().for_each(|x| *x *= t);
             local[p.layout.duration()] += p.cost.value - mean;
-            p.project(local, per_work, &mut self.cost_gradient);
+            p.by_theta.pull(local, per_work, &mut self.cost_gradient);
             self.duration_gradient[k * m + self.variables.duration()] = 1.0;
-            p.project(&p.travel_p, 1.0, &mut self.travel_gradient);
+            p.by_theta.pull(&p.travel_p, 1.0, &mut self.travel_gradient);
         }
     }
 
@@ -234,12 +240,12 @@ impl Cycle<'_> {
             match *equation {
                 Equation::ClosureOfBeta(k) => {
                     let (p, last, place) = at_end(k);
-                    p.project(&p.flow.beta_p[last], 1.0, row);
+                    p.by_theta.pull(&p.flow.beta_p[last], 1.0, row);
                     row[place(d.unactuated)] -= 1.0;
                 }
                 Equation::ClosureOfSigma(k) => {
                     let (p, last, place) = at_end(k);
-                    p.project(&p.flow.sigma_p[last], 1.0 / momentum, row);
+                    p.by_theta.pull(&p.flow.sigma_p[last], 1.0 / momentum, row);
                     for (j, by) in p.shapes.momentum.sigma_w.of(&p.momentum_end).iter().enumerate() {
                         row[place(j)] -= by / momentum;
                     }
@@ -253,8 +259,8 @@ impl Cycle<'_> {
                     if let Some(fall) = p.fall(d) {
                         let local = &mut local[..p.layout.len()];
                         local.fill(0.0);
-                        fall.add_height_gradient(1.0, 1.0 / length, local);
-                        p.project(local, 1.0, row);
+                        fall.add_height_gradient(1.0, 1.0 / length, &mut local[p.layout.duration()..]);
+                        p.by_theta.pull(local, 1.0, row);
                     }
                 }
                 Equation::MeanSpeed => {
@@ -271,8 +277,10 @@ impl Cycle<'_> {
                 }
                 Equation::Still { phase, joint, node } => {
                     let p = &self.phases[phase];
-                    let rate = p.instants.gradient(node, p.instants.quantities.rate(joint));
-                    p.project(rate, 1.0 / units.rate(), row);
+                    let local = &mut local[..p.layout.len()];
+                    local.fill(0.0);
+                    p.add_quantity(d, node, p.instants.quantities.rate(joint), 1.0 / units.rate(), local);
+                    p.by_theta.pull(local, 1.0, row);
                 }
             }
         }
@@ -401,24 +409,23 @@ impl Problem for Cycle<'_> {
     }
 
     fn inequality_row(&self, i: usize, row: &mut [f64]) {
+        let d = self.description();
+        row.fill(0.0);
         match self.rows.inequalities[i] {
             Row::Path { phase, node, constraint } => {
                 let p = &self.phases[phase];
-                row.fill(0.0);
-                p.path[constraint].partials(p.linearized(node), |quantity, partial| {
-                    p.project(p.instants.gradient(node, quantity), partial, row);
-                });
+                let mut local = p.no_parameters();
+                p.add_constraint(d, node, &p.path[constraint], 1.0, &mut local);
+                p.by_theta.pull(&local, 1.0, row);
             }
             Row::Dip { phase, index } => {
                 let p = &self.phases[phase];
                 let dip = &p.dips[index];
-                row.fill(0.0);
-                for (i, share) in dip.lowest.shape.iter().enumerate().take(NODES) {
-                    let node = dip.first() + i;
-                    p.path[dip.constraint].partials(p.linearized(node), |quantity, partial| {
-                        p.project(p.instants.gradient(node, quantity), share * partial, row);
-                    });
+                let mut local = p.no_parameters();
+                for (i, share) in dip.lowest.shape.iter().enumerate() {
+                    p.add_constraint(d, dip.first() + i, &p.path[dip.constraint], *share, &mut local);
                 }
+                p.by_theta.pull(&local, 1.0, row);
             }
             Row::Impact { phase, constraint } => {
                 let first = self.rows.inequalities.len() - self.rows.impacts();
@@ -429,43 +436,37 @@ impl Problem for Cycle<'_> {
     }
 
     fn inequality_directions(&self, direction: &[f64], out: &mut [f64]) {
-        let n = direction.len();
-        let mut slots = out.iter_mut();
-        let mut local = smallvec::SmallVec::<[f64; 64]>::new();
-        let mut change = smallvec::SmallVec::<[f64; 32]>::new();
-        for p in &self.phases {
-            // The direction in local parameters, then in the quantities of each instant.
-            local.clear();
-            local.extend(p.by_theta.chunks(n).map(|row| dot(row, direction)));
+        let d = self.description();
+        let mut change = SmallVec::<[f64; 32]>::new();
+        for (k, p) in self.phases.iter().enumerate() {
+            let rows = self.rows.of(k);
+            // The direction in local parameters, then in the state and the quantities of each instant.
+            let local: SmallVec<[f64; 64]> = p.by_theta.push(direction).collect();
+            let mut state = SmallVec::<[f64; 32]>::from_elem(0.0, p.instants.width());
+            let mut dips = SmallVec::<[f64; 16]>::from_elem(0.0, p.dips.len());
+            change.resize(p.instants.quantities.len(), 0.0);
+            let mut slots = out[rows.path.clone()].iter_mut();
             for node in 0..p.mesh.nodes.len() {
-                change.clear();
-                change.extend(p.instants.gradients(node).chunks(local.len()).map(|g| dot(g, &local)));
+                p.instants.chain(d, &p.flow, node).push(&local, &mut state);
+                multiply(p.instants.gradients(node), &state, &mut change);
                 let y = p.linearized(node);
-                let imposed = p.path.iter().filter(|c| c.is_imposed(node));
-                for (constraint, slot) in imposed.zip(&mut slots) {
+                let along = |constraint: &PathConstraint| {
                     let mut sum = 0.0;
                     constraint.partials(y, |quantity, partial| sum += partial * change[quantity]);
-                    *slot = sum;
+                    sum
+                };
+                let imposed = p.path.iter().filter(|c| c.is_imposed(node));
+                imposed.zip(&mut slots).for_each(|(constraint, slot)| *slot = along(constraint));
+                for (dip, sum) in p.dips.iter().zip(&mut dips) {
+                    if let Some(share) = node.checked_sub(dip.first()).and_then(|i| dip.lowest.shape.get(i)) {
+                        *sum += share * along(&p.path[dip.constraint]);
+                    }
                 }
             }
+            out[rows.dips.clone()].copy_from_slice(&dips);
         }
-        for p in &self.phases {
-            local.clear();
-            local.extend(p.by_theta.chunks(n).map(|row| dot(row, direction)));
-            for (dip, slot) in p.dips.iter().zip(&mut slots) {
-                let mut sum = 0.0;
-                for (i, share) in dip.lowest.shape.iter().enumerate().take(NODES) {
-                    let node = dip.first() + i;
-                    p.path[dip.constraint].partials(p.linearized(node), |quantity, partial| {
-                        sum += share * partial * dot(p.instants.gradient(node, quantity), &local);
-                    });
-                }
-                *slot = sum;
-            }
-        }
-        for (row, slot) in self.impact_rows.chunks(n).zip(slots) {
-            *slot = dot(row, direction);
-        }
+        let first = out.len() - self.rows.impacts();
+        multiply(&self.impact_rows, direction, &mut out[first..]);
     }
 
     fn kinks(&self) -> usize {
@@ -476,8 +477,10 @@ impl Problem for Cycle<'_> {
         let Some((phase, joint, node)) = self.resting().nth(i) else { return 0.0 };
         let p = &self.phases[phase];
         let y = p.instants.quantities;
+        let mut local = p.no_parameters();
+        p.add_quantity(self.description(), node, y.rate(joint), 1.0, &mut local);
         row.fill(0.0);
-        p.project(p.instants.gradient(node, y.rate(joint)), 1.0, row);
+        p.by_theta.pull(&local, 1.0, row);
         // Of all joints that this one stands for.
         let drives = Drive::all(self.description(), p.mode);
         let torques = drives

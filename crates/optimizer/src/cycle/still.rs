@@ -79,9 +79,13 @@ impl Cycle<'_> {
     pub fn set_in_motion(&self, step: &[f64]) -> Vec<Still> {
         let d = self.description();
         let fastest = |p: &Phase, joint: usize| {
-            let local: Vec<f64> = p.by_theta.chunks(step.len()).map(|row| dot(row, step)).collect();
-            let rate = p.instants.quantities.rate(joint);
-            (0..p.mesh.nodes.len()).map(|node| dot(p.instants.gradient(node, rate), &local).abs()).fold(0.0, f64::max)
+            let local: Vec<f64> = p.by_theta.push(step).collect();
+            let change = |node: usize| {
+                let mut by = p.no_parameters();
+                p.add_quantity(d, node, p.instants.quantities.rate(joint), 1.0, &mut by);
+                dot(&by, &local).abs()
+            };
+            (0..p.mesh.nodes.len()).map(change).fold(0.0, f64::max)
         };
         let all = self.phases.iter().flat_map(|p| (0..d.joints()).map(|joint| fastest(p, joint)));
         let limit = AT_REST * all.fold(0.0, f64::max);

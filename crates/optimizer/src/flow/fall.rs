@@ -57,30 +57,39 @@ impl Fall {
         }
     }
 
-    /// Adds `weight` times the gradient of its height at `s` in the parameters.
+    /// Adds `weight` times the gradient of its height at `s` in the parameters from the duration on.
     pub fn add_height_gradient(&self, s: f64, weight: f64, out: &mut [f64]) {
-        out[self.layout.centre_height()] += weight;
-        out[self.layout.centre_velocity(UP)] += weight * s * self.duration;
-        out[self.layout.duration()] += weight * s * self.rise(s);
+        out[self.at_height()] += weight;
+        out[self.at_velocity(UP)] += weight * s * self.duration;
+        out[0] += weight * s * self.rise(s);
     }
 
     /// The same of how fast it rises.
     pub fn add_rise_gradient(&self, s: f64, weight: f64, out: &mut [f64]) {
-        out[self.layout.centre_velocity(UP)] += weight;
-        out[self.layout.duration()] -= weight * s * self.gravity;
+        out[self.at_velocity(UP)] += weight;
+        out[0] -= weight * s * self.gravity;
     }
 
     /// The same of how far it has come.
     pub fn add_advance_gradient(&self, s: f64, weight: f64, out: &mut [f64]) {
-        out[self.layout.centre_velocity(FORWARD)] += weight * s * self.duration;
-        out[self.layout.duration()] += weight * s * self.velocity[FORWARD];
+        out[self.at_velocity(FORWARD)] += weight * s * self.duration;
+        out[0] += weight * s * self.velocity[FORWARD];
     }
 
     /// Second derivatives of its height, of how fast it rises and of how far it has come, as pairs of parameters, the first that of
-    /// the duration: `add(other, second derivative)` with each weighted. Of the duration with itself half the second derivative.
+    /// the duration: `add(other, second derivative)` with each weighted, others counted from the duration on. Of the duration with
+    /// itself half the second derivative.
     pub fn second_derivatives(&self, s: f64, [height, advance]: [f64; 2], mut add: impl FnMut(usize, f64)) {
-        add(self.layout.centre_velocity(UP), height * s);
-        add(self.layout.duration(), -0.5 * height * self.gravity * s * s);
-        add(self.layout.centre_velocity(FORWARD), advance * s);
+        add(self.at_velocity(UP), height * s);
+        add(0, -0.5 * height * self.gravity * s * s);
+        add(self.at_velocity(FORWARD), advance * s);
+    }
+
+    fn at_height(&self) -> usize {
+        self.layout.centre_height() - self.layout.duration()
+    }
+
+    fn at_velocity(&self, component: usize) -> usize {
+        self.layout.centre_velocity(component) - self.layout.duration()
     }
 }

@@ -83,6 +83,11 @@ impl Layout {
         (0..self.durations).filter(|k| *k != self.phase).map(|k| (k, self.duration_of(k)))
     }
 
+    /// How many there are from the duration on: what quantities of an instant may depend on beside its state.
+    pub fn direct(&self) -> usize {
+        self.len() - self.duration()
+    }
+
     pub fn len(&self) -> usize {
         self.duration() + 3 + if self.flies { FALL } else { 0 } + self.durations - 1
     }

@@ -1,82 +1,87 @@
-//! From derivatives in the state of an instant to derivatives in the parameters of its half step.
+//! From derivatives in the state of an instant to derivatives in the parameters of its half step, and back.
+//!
+//! The *state* of an instant is q, q̇, q̈ and, because some quantities depend on them directly, the parameters from the duration on.
+//! A weighted sum of many gradients is taken there, where they are short, and pulled to the parameters once.
 
 use super::Instants;
 use crate::flow::{Flow, Layout};
 use piaffe_model::Description;
+use piaffe_sqp::dot;
 
-/// Derivatives in (q, q̇, q̈), by parts.
-pub(super) fn parts(row: &[f64], nq: usize) -> [&[f64]; 3] {
-    [&row[..nq], &row[nq..2 * nq], &row[2 * nq..]]
-}
-
-/// The chain rule at one node: from partial derivatives in q, q̇, q̈ to the local parameters.
-pub(super) struct Chain<'a> {
+/// The chain rule at one node.
+pub struct Chain<'a> {
     d: &'a Description,
     layout: Layout,
-    basis: &'a [[f64; 3]],
-    by_duration: &'a [[f64; 3]],
-    beta_p: &'a [f64],
-    betad_p: &'a [f64],
+    /// Derivatives of Q, Q̇, Q̈ in each of their parameters, and in T for each coordinate.
+    pub basis: &'a [[f64; 3]],
+    pub by_duration: &'a [[f64; 3]],
+    /// Gradients of β, β̇, β̈ in the parameters.
+    pub unactuated: [&'a [f64]; 3],
 }
 
 impl<'a> Chain<'a> {
-    pub(super) fn new(instants: &'a Instants, d: &'a Description, stance: &'a Flow, node: usize) -> Chain<'a> {
+    /// `betadd` is the gradient of β̈, if it is known.
+    pub(super) fn new(
+        instants: &'a Instants,
+        d: &'a Description,
+        flow: &'a Flow,
+        node: usize,
+        betadd: &'a [f64],
+    ) -> Chain<'a> {
         let layout = instants.layout;
-        let np = layout.len();
+        let own = layout.len() * node..layout.len() * (node + 1);
         Chain {
             d,
             layout,
             basis: &instants.basis[node * layout.per_joint..][..layout.per_joint],
-            by_duration: stance.prescribed.by_duration(node),
-            beta_p: &stance.beta_p[node * np..][..np],
-            betad_p: &stance.betad_p[node * np..][..np],
+            by_duration: &instants.by_duration[node * layout.prescribed..][..layout.prescribed],
+            unactuated: [&flow.beta_p[own.clone()], &flow.betad_p[own], betadd],
         }
     }
 
-    /// `parts` are the partial derivatives in q, q̇ and q̈ (each may be empty). Without `betadd_p` the
-    /// derivative in β̈ is left out.
-    pub(super) fn row(&self, parts: [&[f64]; 3], betadd_p: Option<&[f64]>, out: &mut [f64]) {
-        let (layout, beta) = (self.layout, self.d.unactuated);
-        let at = |part: usize, index: usize| parts[part].get(index).copied().unwrap_or(0.0);
-        let mut by_duration = 0.0;
-        for (j, out) in out.chunks_mut(layout.per_joint).take(layout.prescribed).enumerate() {
+    /// `out` ← Uᵀ·state, U = ∂state/∂parameters.
+    pub fn pull(&self, state: &[f64], out: &mut [f64]) {
+        self.pull_explicit(state, out);
+        let c = state[2 * self.d.orientations() + self.d.unactuated];
+        out.iter_mut().zip(self.unactuated[2]).for_each(|(out, by)| *out += c * by);
+    }
+
+    /// The same but for what depends on β̈.
+    pub(super) fn pull_explicit(&self, state: &[f64], out: &mut [f64]) {
+        let (nq, beta) = (self.d.orientations(), self.d.unactuated);
+        let (prescribed, direct) = out.split_at_mut(self.layout.duration());
+        direct.copy_from_slice(&state[3 * nq..]);
+        let [q, qd, qdd] = [0, 1, 2].map(|order| &state[order * nq..(order + 1) * nq]);
+        for (j, out) in prescribed.chunks_exact_mut(self.basis.len()).enumerate() {
             let index = self.d.prescribed_index(j);
-            let [a, b, c] = [at(0, index), at(1, index), at(2, index)];
-            for (o, basis) in out.iter_mut().zip(self.basis) {
-                *o = a * basis[0] + b * basis[1] + c * basis[2];
+            let (a, b, c) = (q[index], qd[index], qdd[index]);
+            for (out, basis) in out.iter_mut().zip(self.basis) {
+                *out = a * basis[0] + b * basis[1] + c * basis[2];
             }
             let t = self.by_duration[j];
-            by_duration += a * t[0] + b * t[1] + c * t[2];
+            direct[0] += a * t[0] + b * t[1] + c * t[2];
         }
-        out[layout.duration()..].fill(0.0);
-        out[layout.duration()] = by_duration;
-        let [a, b, c] = [at(0, beta), at(1, beta), at(2, beta)];
-        match betadd_p {
-            Some(betadd_p) => {
-                for (((o, x), y), z) in out.iter_mut().zip(self.beta_p).zip(self.betad_p).zip(betadd_p) {
-                    *o += a * x + b * y + c * z;
-                }
-            }
-            None => {
-                for ((o, x), y) in out.iter_mut().zip(self.beta_p).zip(self.betad_p) {
-                    *o += a * x + b * y;
-                }
-            }
+        let (a, b) = (q[beta], qd[beta]);
+        for ((out, x), y) in out.iter_mut().zip(self.unactuated[0]).zip(self.unactuated[1]) {
+            *out += a * x + b * y;
         }
     }
 
-    /// Gradient of coordinate `index` of q (order 0) or of q̇ (order 1).
-    pub(super) fn coordinate(&self, index: usize, order: usize, out: &mut [f64]) {
-        let layout = self.layout;
-        if index == self.d.unactuated {
-            out.copy_from_slice(if order == 0 { self.beta_p } else { self.betad_p });
-            return;
+    /// `state` ← U·local.
+    pub fn push(&self, local: &[f64], state: &mut [f64]) {
+        let nq = self.d.orientations();
+        let (prescribed, direct) = local.split_at(self.layout.duration());
+        for (j, own) in prescribed.chunks_exact(self.basis.len()).enumerate() {
+            let mut sums = self.by_duration[j].map(|by| by * direct[0]);
+            for (basis, x) in self.basis.iter().zip(own) {
+                sums.iter_mut().zip(basis).for_each(|(sum, basis)| *sum += basis * x);
+            }
+            let index = self.d.prescribed_index(j);
+            sums.iter().enumerate().for_each(|(order, sum)| state[order * nq + index] = *sum);
         }
-        let j = if index < self.d.unactuated { index } else { index - 1 };
-        out.fill(0.0);
-        for (o, basis) in out[layout.joint(j, 0)..].iter_mut().zip(self.basis) {
-            *o = basis[order];
+        for (order, by) in self.unactuated.iter().enumerate() {
+            state[order * nq + self.d.unactuated] = dot(by, local);
         }
-        out[layout.duration()] = self.by_duration[j][order];
+        state[3 * nq..].copy_from_slice(direct);
     }
 }

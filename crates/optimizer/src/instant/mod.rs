@@ -1,19 +1,19 @@
 //! Everything that constraints and criteria look at, at each instant of a phase.
 //!
 //! The *quantities* of an instant are the torques of all joints, the reaction, the joints' angles and
-//! rates, the clearances of the feet in the air, the platform's height and that of all that can be lowest; each with its gradient in the
-//! phase's parameters.
+//! rates, the clearances of the feet in the air, the platform's height and that of all that can be lowest; each with its gradient in
+//! the instant's state (see `chain`).
 
 mod chain;
 mod glance;
 mod quantities;
 
+pub use chain::Chain;
 pub use glance::Glance;
 pub use quantities::{Quantities, Shared};
 
 use crate::flow::{Fall, Flow, Layout, Mesh, basis_derivatives};
 use crate::swing::{ByDurations, Factor, Of, Swing, swings};
-use chain::{Chain, parts};
 use piaffe_model::shape::{ModeShapes, Takeoff};
 use piaffe_model::{Description, FORWARD, Gait, Mode, UP};
 
@@ -31,6 +31,8 @@ pub struct Instants {
     layout: Layout,
     components: usize,
     gravity: f64,
+    /// Entries of a state.
+    width: usize,
     /// One row of quantities per node.
     pub values: Vec<f64>,
     /// q, q̇ and q̈, a row per node.
@@ -45,12 +47,16 @@ pub struct Instants {
     heights: Vec<f64>,
     /// Results of the `sharing` kernel, a row per node; none if nothing shared is looked at.
     sharing: Vec<f64>,
-    /// Per node and quantity a row of derivatives in the local parameters.
+    /// Per node and quantity a row of derivatives in the state. Those of angles and rates are units and never change.
     gradients: Vec<f64>,
+    /// A state.
+    scratch: Vec<f64>,
     /// ∂β̈/∂parameters, a row per node.
-    pub betadd_p: Vec<f64>,
+    betadd_p: Vec<f64>,
     /// Per node and basis parameter the derivatives of Q, Q̇, Q̈.
-    pub basis: Vec<[f64; 3]>,
+    basis: Vec<[f64; 3]>,
+    /// The same in T, per node and prescribed coordinate.
+    by_duration: Vec<[f64; 3]>,
 }
 
 impl Instants {
@@ -64,6 +70,14 @@ impl Instants {
         let n = mesh.nodes.len();
         let leaves = swings.iter().any(Swing::begins_at_rest);
         let takeoff_shape = if leaves { d.shapes.takeoff } else { Takeoff::NONE };
+        let width = 3 * nq + layout.direct();
+        let mut gradients = vec![0.0; n * quantities.len() * width];
+        for block in gradients.chunks_mut(quantities.len() * width) {
+            for joint in 0..d.joints() {
+                block[quantities.angle(joint) * width + joint] = 1.0;
+                block[quantities.rate(joint) * width + nq + joint] = 1.0;
+            }
+        }
         Instants {
             quantities,
             mode,
@@ -82,9 +96,12 @@ impl Instants {
             swing: [shapes.swing_velocity.zeros(), shapes.swing_velocity.zeros()],
             heights: vec![0.0; n * shapes.heights.len],
             sharing: vec![0.0; n * quantities.sharing(shapes).len],
-            gradients: vec![0.0; n * quantities.len() * layout.len()],
+            width,
+            gradients,
+            scratch: vec![0.0; width],
             betadd_p: vec![0.0; n * layout.len()],
             basis: vec![[0.0; 3]; n * layout.per_joint],
+            by_duration: vec![[0.0; 3]; n * layout.prescribed],
         }
     }
 
@@ -100,18 +117,29 @@ impl Instants {
         &self.values[node * self.quantities.len()..][..self.quantities.len()]
     }
 
-    /// Gradient of a quantity at a node in the local parameters.
+    /// Entries of a state: see [`Chain`].
     #[inline]
-    pub fn gradient(&self, node: usize, quantity: usize) -> &[f64] {
-        let np = self.layout.len();
-        &self.gradients[(node * self.quantities.len() + quantity) * np..][..np]
+    pub fn width(&self) -> usize {
+        self.width
     }
 
-    /// Gradients of all quantities of a node, row after row.
+    /// Gradient of a quantity at a node in the state.
+    #[inline]
+    pub fn gradient(&self, node: usize, quantity: usize) -> &[f64] {
+        &self.gradients[(node * self.quantities.len() + quantity) * self.width..][..self.width]
+    }
+
+    /// Gradients of all quantities of a node in the state, row after row.
     #[inline]
     pub fn gradients(&self, node: usize) -> &[f64] {
-        let size = self.quantities.len() * self.layout.len();
+        let size = self.quantities.len() * self.width;
         &self.gradients[node * size..][..size]
+    }
+
+    /// The chain rule at a node, of the last linearization.
+    pub fn chain<'a>(&'a self, d: &'a Description, flow: &'a Flow, node: usize) -> Chain<'a> {
+        let np = self.layout.len();
+        Chain::new(self, d, flow, node, &self.betadd_p[node * np..][..np])
     }
 
     /// q, q̇ and q̈ at a node.
@@ -251,66 +279,52 @@ impl Instants {
 
     /// Gradients of all quantities; `flow` must have been differentiated.
     pub fn differentiate(&mut self, d: &Description, mesh: &Mesh, flow: &Flow, parameters: &[f64]) {
-        let (nq, nj, np, s) = (d.orientations(), d.joints(), self.layout.len(), self.shapes);
+        let (nq, np, width, s) = (d.orientations(), self.layout.len(), self.width, self.shapes);
         let y = self.quantities;
         let fall = Fall::new(&self.layout, self.gravity, parameters);
         let mut gradients = std::mem::take(&mut self.gradients);
         let mut betadd = std::mem::take(&mut self.betadd_p);
-        for k in 0..mesh.nodes.len() {
+        let mut state = std::mem::take(&mut self.scratch);
+        for (k, block) in gradients.chunks_mut(y.len() * width).enumerate() {
             let share = mesh.nodes[k].0;
-            self.tabulate(mesh, parameters, k);
-            let chain = Chain::new(self, d, flow, k);
+            self.tabulate(mesh, flow, parameters, k);
             // β̈ follows from the balance (eq. 10): its row tells how.
-            let betadd_p = &mut betadd[k * np..(k + 1) * np];
-            let balance = parts(self.balance(k), nq);
-            chain.row(balance, None, betadd_p);
-            let over_f1 = -1.0 / balance[2][d.unactuated];
-            betadd_p.iter_mut().for_each(|x| *x *= over_f1);
+            state[..3 * nq].copy_from_slice(self.balance(k));
+            let over_f1 = -1.0 / std::mem::take(&mut state[2 * nq + d.unactuated]);
+            state.iter_mut().for_each(|x| *x *= over_f1);
+            Chain::new(self, d, flow, k, &[]).pull_explicit(&state, &mut betadd[k * np..(k + 1) * np]);
 
-            let block = &mut gradients[k * y.len() * np..(k + 1) * y.len() * np];
-            for (row, out) in self.forces(k).zip(block.chunks_mut(np)) {
-                chain.row(parts(row, nq), Some(betadd_p), out);
+            for (row, out) in self.forces(k).zip(block.chunks_mut(width)) {
+                out[..3 * nq].copy_from_slice(row);
             }
-            for (j, out) in block[y.angle(0) * np..].chunks_mut(np).take(nj).enumerate() {
-                chain.coordinate(j, 0, out);
-            }
-            for (j, out) in block[y.rate(0) * np..].chunks_mut(np).take(nj).enumerate() {
-                chain.coordinate(j, 1, out);
-            }
-            let row = s.placement.p_q.row(self.placement(k), UP);
-            let out = &mut block[y.height() * np..][..np];
-            chain.row([row, &[], &[]], None, out);
-            if let Some(fall) = fall {
-                fall.add_height_gradient(share, 1.0, out);
-            }
-            let heights = block[y.heights().start * np..y.heights().end * np].chunks_mut(np);
-            for (row, out) in self.heights(k).zip(heights) {
-                chain.row([row, &[], &[]], None, out);
+            let height = s.placement.p_q.row(self.placement(k), UP);
+            let heights = std::iter::once(height).chain(self.heights(k));
+            for (row, out) in heights.zip(block[y.height() * width..].chunks_mut(width)) {
+                out[..nq].copy_from_slice(row);
                 if let Some(fall) = fall {
-                    fall.add_height_gradient(share, 1.0, out);
+                    out[3 * nq..].fill(0.0);
+                    fall.add_height_gradient(share, 1.0, &mut out[3 * nq..]);
                 }
             }
-            for (row, out) in self.sharing(k).zip(block[y.shared().start * np..].chunks_mut(np)) {
-                chain.row(parts(row, nq), Some(betadd_p), out);
+            for (row, out) in self.sharing(k).zip(block[y.shared().start * width..].chunks_mut(width)) {
+                out[..3 * nq].copy_from_slice(row);
             }
             for foot in 0..y.feet() {
                 let factor = self.factor(mesh, k, foot);
                 let clearance = self.values[k * y.len() + y.clearance(foot)];
-                let out = &mut block[y.clearance(foot) * np..][..np];
+                let out = &mut block[y.clearance(foot) * width..][..width];
                 let row = self.of_foot(mesh, k, foot, factor.of);
-                match factor.of {
-                    Of::Height => chain.row([row, &[], &[]], None, out),
-                    Of::Velocity => chain.row([&row[..nq], &row[nq..], &[]], None, out),
-                    Of::Acceleration => chain.row(parts(row, nq), Some(betadd_p), out),
-                }
+                out.fill(0.0);
+                out[..row.len()].copy_from_slice(row);
+                let direct = &mut out[3 * nq..];
                 match (fall, factor.of) {
-                    (Some(fall), Of::Height) => fall.add_height_gradient(share, 1.0, out),
-                    (Some(fall), Of::Velocity) => fall.add_rise_gradient(share, 1.0, out),
+                    (Some(fall), Of::Height) => fall.add_height_gradient(share, 1.0, direct),
+                    (Some(fall), Of::Velocity) => fall.add_rise_gradient(share, 1.0, direct),
                     _ => {}
                 }
                 out.iter_mut().for_each(|x| *x *= factor.value);
                 if let Some(by) = self.by_durations(mesh, k, foot) {
-                    for (at, by) in self.layout.durations().zip(&by.first) {
+                    for (at, by) in self.direct_durations(nq).zip(&by.first) {
                         out[at] += clearance / factor.value * by;
                     }
                 }
@@ -318,16 +332,23 @@ impl Instants {
         }
         self.gradients = gradients;
         self.betadd_p = betadd;
+        self.scratch = state;
+    }
+
+    /// Where the durations that swings depend on stand in a state of `nq` coordinates.
+    pub fn direct_durations(&self, nq: usize) -> impl Iterator<Item = usize> + '_ {
+        self.layout.durations().map(move |at| 3 * nq + at - self.layout.duration())
     }
 
     /// Derivatives of Q, Q̇, Q̈ at node `k`, for the duration at hand.
-    fn tabulate(&mut self, mesh: &Mesh, parameters: &[f64], k: usize) {
+    fn tabulate(&mut self, mesh: &Mesh, flow: &Flow, parameters: &[f64], k: usize) {
         let layout = self.layout;
         let t = parameters[layout.duration()];
         let jet = &mesh.nodes[k].1;
         for i in 0..layout.per_joint {
             self.basis[k * layout.per_joint + i] = basis_derivatives(&mesh.basis, jet, t, i);
         }
+        self.by_duration[k * layout.prescribed..][..layout.prescribed].copy_from_slice(flow.prescribed.by_duration(k));
     }
 
     /// How far forward the platform's mass centre has come at a node since take-off or beside the stance foot, m.
@@ -347,10 +368,12 @@ impl Instants {
         out: &mut [f64],
     ) {
         let row = self.shapes.placement.p_q.row(self.placement(node), FORWARD);
-        Chain::new(self, d, flow, node).row([row, &[], &[]], None, out);
+        let mut state = smallvec::SmallVec::<[f64; 32]>::from_elem(0.0, self.width);
+        state[..row.len()].copy_from_slice(row);
         if let Some(fall) = Fall::new(&self.layout, self.gravity, parameters) {
-            fall.add_advance_gradient(mesh.nodes[node].0, 1.0, out);
+            fall.add_advance_gradient(mesh.nodes[node].0, 1.0, &mut state[3 * d.orientations()..]);
         }
+        self.chain(d, flow, node).pull_explicit(&state, out);
     }
 
     /// The foot that leaves the ground at rest when the phase begins.

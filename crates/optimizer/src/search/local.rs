@@ -102,8 +102,7 @@ impl Task<'_> {
     /// Minimizes from `start`, which may be far from any motion: the nearest motion first, then an approximate optimum on
     /// a coarse mesh, then the optimum.
     pub fn descend(&self, start: &[f64], observe: Observer) -> Local {
-        let coarse = elements(self.gait.description()) / 2;
-        let mut cycle = Cycle::with_elements(self.gait, self.criterion, self.speed, coarse);
+        let mut cycle = self.coarse();
         let options = options(&cycle);
         let nearest = nearest(&mut cycle, start, &options, observe);
         let local = self.approach(cycle, &nearest.x, &options, observe);
@@ -144,6 +143,11 @@ impl Task<'_> {
         Cycle::new(self.gait, self.criterion, self.speed)
     }
 
+    /// On few elements, which do where it is not about the last digits.
+    fn coarse(&self) -> Cycle<'_> {
+        Cycle::with_elements(self.gait, self.criterion, self.speed, elements(self.gait.description()) / 2)
+    }
+
     /// An approximate optimum of `cycle`, then the optimum.
     fn approach(&self, mut cycle: Cycle, start: &[f64], options: &Options, observe: Observer) -> Local {
         let mut first_step_limit = f64::INFINITY;
@@ -172,8 +176,11 @@ impl Task<'_> {
         iterations += free.iterations;
         let theta = free.theta.clone();
         for share in SLOW {
+            if free.is_settled() {
+                break;
+            }
             let slow = self.slow(&theta, share);
-            if free.is_settled() || slow.is_empty() || slow == held {
+            if slow.is_empty() || slow == held {
                 continue;
             }
             held = slow;
@@ -233,12 +240,11 @@ impl Task<'_> {
 
     /// Joints that hardly move, by this share of the fastest one's rate.
     fn slow(&self, theta: &[f64], share: f64) -> Vec<Still> {
-        let mut cycle = self.cycle();
-        if self.criterion == Criterion::Energy && cycle.simulate(theta).is_ok() {
-            cycle.still(share)
-        } else {
-            Vec::new()
+        if self.criterion != Criterion::Energy {
+            return Vec::new();
         }
+        let mut cycle = self.coarse();
+        if cycle.simulate(theta).is_ok() { cycle.still(share) } else { Vec::new() }
     }
 
     /// The optimum near `start` with these joints held still, and these going on, on a mesh that resolves it.

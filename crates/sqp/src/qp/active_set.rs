@@ -27,6 +27,8 @@ const VIOLATED: f64 = 1e-13;
 /// From this many rows on, each look at all of them yields up to `QUEUE` candidates.
 const MANY: usize = 100;
 const QUEUE: usize = 12;
+/// Rows whose values are found at once.
+const BLOCK: usize = 32;
 /// Residual of the optimality conditions at which the answer stands.
 const ACCEPT: f64 = 1e-9;
 
@@ -180,30 +182,16 @@ impl ActiveSet {
                 return Some((id, sign));
             }
         }
-        for id in 0..self.place.len() {
-            // Most constraints are in order, and cheaply seen to be.
-            let value = self.value(qp, id);
-            let in_order = match self.place[id] {
-                Place::Working => true,
-                Place::Off => value >= 0.0 && !self.equality(qp, id),
-                Place::Full => value <= 0.0,
-                Place::Empty => value >= 0.0,
-            };
-            if in_order {
-                continue;
-            }
-            if let Some((mut violation, _)) = self.contradiction(qp, id, reach) {
-                if self.equality(qp, id) && self.place[id] == Place::Off {
-                    violation = f64::MAX;
-                }
-                // Insertion into the few largest, the largest last; of equals the first comes first.
-                let position = self.queue.partition_point(|(other, _)| *other < violation);
-                if self.queue.len() < self.queue_length {
-                    self.queue.insert(position, (violation, id));
-                } else if position > 0 {
-                    self.queue[..position].rotate_left(1);
-                    self.queue[position - 1] = (violation, id);
-                }
+        for j in 0..self.n {
+            self.look(qp, j, self.d[j] - qp.lower[j], reach);
+            self.look(qp, self.n + j, qp.upper[j] - self.d[j], reach);
+        }
+        let mut values = [0.0; BLOCK];
+        for first in (0..qp.len()).step_by(BLOCK) {
+            let values = &mut values[..BLOCK.min(qp.len() - first)];
+            qp.values(first, &self.d, values);
+            for (k, value) in values.iter().enumerate() {
+                self.look(qp, 2 * self.n + first + k, *value, reach);
             }
         }
         let (_, id) = self.queue.pop()?;
@@ -217,6 +205,37 @@ impl ActiveSet {
         Some((id, sign))
     }
 
+    /// Queues a constraint with this value if it is one of those that contradict optimality most.
+    #[inline(always)]
+    fn look(&mut self, qp: &Quadratic, id: usize, value: f64, reach: f64) {
+        // Most constraints are in order, and cheaply seen to be.
+        let in_order = match self.place[id] {
+            Place::Working => true,
+            Place::Off => value >= 0.0 && !self.equality(qp, id),
+            Place::Full => value <= 0.0,
+            Place::Empty => value >= 0.0,
+        };
+        if !in_order {
+            self.queue(qp, id, reach);
+        }
+    }
+
+    fn queue(&mut self, qp: &Quadratic, id: usize, reach: f64) {
+        if let Some((mut violation, _)) = self.contradiction(qp, id, reach) {
+            if self.equality(qp, id) && self.place[id] == Place::Off {
+                violation = f64::MAX;
+            }
+            // Insertion into the few largest, the largest last; of equals the first comes first.
+            let position = self.queue.partition_point(|(other, _)| *other < violation);
+            if self.queue.len() < self.queue_length {
+                self.queue.insert(position, (violation, id));
+            } else if position > 0 {
+                self.queue[..position].rotate_left(1);
+                self.queue[position - 1] = (violation, id);
+            }
+        }
+    }
+
     fn ascend(&mut self, qp: &Quadratic) -> Result<(), Failure> {
         let limit = 50 + 10 * (self.n + qp.len());
         let mut count = 0;
@@ -225,16 +244,14 @@ impl ActiveSet {
         self.excused.clear();
         self.excused.resize(self.place.len(), false);
         while let Some((p, sign)) = self.pick(qp) {
-            if !self.excused[p] {
-                self.project(qp, p);
-                if !self.independent(DEPENDENT) {
-                    // Look again without the rounding that the steps have left in d; the row is picked again only if it is
-                    // violated by more than can be excused.
-                    self.excused[p] = true;
-                    self.stationarity(qp);
-                    self.correct(qp);
-                    continue;
-                }
+            self.project(qp, p);
+            if !self.excused[p] && !self.independent(DEPENDENT) {
+                // Look again without the rounding that the steps have left in d; the row is picked again only if it is
+                // violated by more than can be excused.
+                self.excused[p] = true;
+                self.stationarity(qp);
+                self.correct(qp);
+                continue;
             }
             // Raise (or lower) the multiplier of p until p holds, is dropped, or its limit is reached.
             loop {
@@ -245,20 +262,21 @@ impl ActiveSet {
                 if self.advance(qp, p, sign)? {
                     break;
                 }
+                self.project(qp, p);
             }
         }
         Ok(())
     }
 
-    /// One step of the dual ascent along the multiplier of `p`. `true` when `p` is settled.
+    /// One step of the dual ascent along the multiplier of `p`, whose projection is in `w`. `true` when `p` is settled.
     fn advance(&mut self, qp: &Quadratic, p: usize, sign: f64) -> Result<bool, Failure> {
         let q = self.factor.q;
-        self.project(qp, p);
         let independent = q < self.n && self.independent(INDEPENDENT);
         if sign < 0.0 {
             self.w.iter_mut().for_each(|w| *w = -*w);
         }
-        self.factor.solve(&self.w, &mut self.change);
+        self.change.copy_from_slice(&self.w);
+        self.factor.solve(&mut self.change);
 
         // t₂: p holds as an equation. t₁: a working multiplier reaches one of its limits. t₃: that of p does.
         let full = if independent {

@@ -1,11 +1,11 @@
-//! The factorization behind the dual method (Goldfarb & Idnani 1983, §4): with H = L·Lᵀ and the normals N of the working set,
+//! The factorization behind the dual method (Goldfarb & Idnani 1983, §4): with H = Uᵀ·U and the normals N of the working set,
 //!
-//! J = L⁻ᵀQ  and  JᵀN = [R; 0],   so that   JᵀHJ = I.
+//! J = U⁻¹Q  and  JᵀN = [R; 0],   so that   JᵀHJ = I.
 //!
 //! The first q columns J₁ span the range of H⁻¹N, the others J₂ the null space of Nᵀ. Adding a normal is one Householder
 //! reflection of J₂, removing one a few Givens rotations: O(n²) each, and orthogonal, so errors do not pile up.
 
-use crate::dense::{axpy, cholesky, dot};
+use crate::dense::{axpy, cholesky, combine, dot, multiply, rotate};
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct Factor {
@@ -16,7 +16,8 @@ pub(super) struct Factor {
     j: Vec<f64>,
     /// R by columns.
     r: Vec<f64>,
-    l: Vec<f64>,
+    u: Vec<f64>,
+    /// A sum of columns of J.
     reflected: Vec<f64>,
     vector: Vec<f64>,
 }
@@ -28,42 +29,36 @@ impl Factor {
             q: 0,
             j: vec![0.0; n * n],
             r: vec![0.0; n * n],
-            l: vec![0.0; n * n],
+            u: vec![0.0; n * n],
             reflected: vec![0.0; n],
             vector: vec![0.0; n],
         }
     }
 
-    /// Empty working set: J = L⁻ᵀ. `false` if H is not positive definite.
+    /// Empty working set: J = U⁻¹. `false` if H is not positive definite.
     pub(super) fn start(&mut self, hessian: &[f64]) -> bool {
         let n = self.n;
         self.q = 0;
-        if !cholesky(hessian, n, &mut self.l) {
+        if !cholesky(hessian, n, &mut self.u) {
             return false;
         }
-        // Column i of L⁻ᵀ is row i of L⁻¹: a forward substitution over whole rows.
-        for i in 0..n {
-            let (above, row) = self.j.split_at_mut(i * n);
-            let row = &mut row[..n];
-            row.fill(0.0);
-            let inverse = 1.0 / self.l[i * n + i];
-            for k in 0..i {
-                axpy(-self.l[i * n + k] * inverse, &above[k * n..k * n + k + 1], row);
+        // Column k of U⁻¹ by forward substitution: once known, it is subtracted from all that come after.
+        self.j.fill(0.0);
+        for k in 0..n {
+            let (done, rest) = self.j.split_at_mut((k + 1) * n);
+            let (column, u) = (&mut done[k * n..=k * n + k], &self.u[k * n + k..(k + 1) * n]);
+            column[k] = 1.0;
+            column.iter_mut().for_each(|x| *x /= u[0]);
+            for (u, later) in u[1..].iter().zip(rest.chunks_exact_mut(n)) {
+                axpy(-u, column, later);
             }
-            row[i] = inverse;
         }
         true
     }
 
-    pub(super) fn column(&self, k: usize) -> &[f64] {
-        &self.j[k * self.n..(k + 1) * self.n]
-    }
-
     /// w ← Jᵀa.
     pub(super) fn project(&self, a: &[f64], w: &mut [f64]) {
-        for (w, column) in w.iter_mut().zip(self.j.chunks_exact(self.n)) {
-            *w = dot(column, a);
-        }
+        multiply(&self.j, a, w);
     }
 
     /// w ← ±Jᵀeᵢ.
@@ -74,28 +69,24 @@ impl Factor {
     }
 
     /// d ← d + t·J₂w₂.
-    pub(super) fn descend(&self, t: f64, w: &[f64], d: &mut [f64]) {
-        for k in self.q..self.n {
-            axpy(t * w[k], self.column(k), d);
-        }
+    pub(super) fn descend(&mut self, t: f64, w: &[f64], d: &mut [f64]) {
+        self.reflected.fill(0.0);
+        combine(&w[self.q..], &self.j[self.q * self.n..], &mut self.reflected);
+        axpy(t, &self.reflected, d);
     }
 
     /// d ← d + J·u.
     pub(super) fn expand(&self, u: &[f64], d: &mut [f64]) {
-        for (column, u) in self.j.chunks_exact(self.n).zip(u) {
-            axpy(*u, column, d);
-        }
+        combine(u, &self.j, d);
     }
 
-    /// out ← R⁻¹·w₁.
-    pub(super) fn solve(&self, w: &[f64], out: &mut [f64]) {
-        let q = self.q;
-        out[..q].copy_from_slice(&w[..q]);
-        for k in (0..q).rev() {
+    /// x₁ ← R⁻¹·x₁.
+    pub(super) fn solve(&self, x: &mut [f64]) {
+        for k in (0..self.q).rev() {
             let column = &self.r[k * self.n..k * self.n + k + 1];
-            let value = out[k] / column[k];
-            out[k] = value;
-            axpy(-value, &column[..k], &mut out[..k]);
+            let value = x[k] / column[k];
+            x[k] = value;
+            axpy(-value, &column[..k], &mut x[..k]);
         }
     }
 
@@ -117,11 +108,10 @@ impl Factor {
         self.vector[q] -= alpha;
         let beta = 1.0 / (length * (length + w[q].abs()));
         self.reflected.fill(0.0);
-        for k in q..n {
-            axpy(self.vector[k], &self.j[k * n..(k + 1) * n], &mut self.reflected);
-        }
-        for k in q..n {
-            axpy(-beta * self.vector[k], &self.reflected, &mut self.j[k * n..(k + 1) * n]);
+        let (vector, free) = (&self.vector[q..], &mut self.j[q * n..]);
+        combine(vector, free, &mut self.reflected);
+        for (v, column) in vector.iter().zip(free.chunks_exact_mut(n)) {
+            axpy(-beta * v, &self.reflected, column);
         }
         let column = &mut self.r[q * n..(q + 1) * n];
         column[..q].copy_from_slice(&w[..q]);
@@ -129,8 +119,8 @@ impl Factor {
         self.q += 1;
     }
 
-    /// Removes normal `k` of the working set; the later ones move up.
-    pub(super) fn remove(&mut self, k: usize) {
+    /// Removes normal `k` of the working set; the later ones move up. What is Jᵀa in `w` stays that.
+    pub(super) fn remove(&mut self, k: usize, w: &mut [f64]) {
         let (n, q) = (self.n, self.q);
         self.r.copy_within((k + 1) * n..q * n, k * n);
         self.q -= 1;
@@ -147,9 +137,8 @@ impl Factor {
                 column[i + 1] = c * b - s * a;
             }
             let (first, second) = self.j[i * n..(i + 2) * n].split_at_mut(n);
-            for (a, b) in first.iter_mut().zip(second) {
-                (*a, *b) = (c * *a + s * *b, c * *b - s * *a);
-            }
+            rotate(c, s, first, second);
+            (w[i], w[i + 1]) = (c * w[i] + s * w[i + 1], c * w[i + 1] - s * w[i]);
         }
     }
 }

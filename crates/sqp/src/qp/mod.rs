@@ -15,7 +15,7 @@ mod factor;
 pub mod interior;
 mod working_set;
 
-use super::dense::{dot, max_abs, multiply, norm};
+use super::dense::{axpy, max_abs, multiply, norm};
 
 /// One quadratic subproblem. Rows are normalized to ‖aᵢ‖₂ = 1 as they come in.
 #[derive(Clone, Debug, Default)]
@@ -159,6 +159,13 @@ impl Quadratic {
         &self.rows[i * self.n..(i + 1) * self.n]
     }
 
+    /// Values aᵀd + b of successive rows, from `first` on.
+    pub(super) fn values(&self, first: usize, d: &[f64], out: &mut [f64]) {
+        let range = first..first + out.len();
+        multiply(&self.rows[range.start * self.n..range.end * self.n], d, out);
+        axpy(1.0, &self.constants[range], out);
+    }
+
     /// Multiplier of row `i` as it was before the row was normalized.
     #[must_use]
     pub fn multiplier(&self, step: &Step, i: usize) -> f64 {
@@ -184,7 +191,7 @@ impl Quadratic {
         }
         for (i, &y) in y.iter().enumerate() {
             if y != 0.0 {
-                super::dense::axpy(-y, self.row(i), scratch);
+                axpy(-y, self.row(i), scratch);
                 size = size.max(y.abs());
             }
         }
@@ -192,8 +199,12 @@ impl Quadratic {
 
         let reach = 1.0 + max_abs(d);
         let mut worst: f64 = 0.0;
+        let mut values = [0.0; 4];
         for (i, &y) in y.iter().enumerate() {
-            let r = dot(self.row(i), d) + self.constants[i];
+            if i % 4 == 0 {
+                self.values(i, d, &mut values[..(self.len() - i).min(4)]);
+            }
+            let r = values[i % 4];
             let (low, high) = self.range(i);
             // In units of the constraint: a multiplier inside its range demands r = 0, one at an end allows one sign.
             let error = if y < low || y > high {

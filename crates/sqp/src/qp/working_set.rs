@@ -90,7 +90,7 @@ impl ActiveSet {
     }
 
     pub(super) fn leave(&mut self, qp: &Quadratic, k: usize, place: Place) {
-        self.factor.remove(k);
+        self.factor.remove(k, &mut self.w);
         let id = self.working.remove(k);
         match place {
             Place::Full | Place::Empty => self.saturate(qp, id, place),
@@ -111,20 +111,30 @@ impl ActiveSet {
     /// Corrects d and the working multipliers so that Hd + g = Aᵀy and the working set holds as equations, given what
     /// `scratch` holds of the former residual and the present values of the working set.
     pub(super) fn correct(&mut self, qp: &Quadratic) {
-        let q = self.factor.q;
-        // J-coordinates: u₁ from the constraints, u₂ from stationarity (see the module header of `factor`).
         self.factor.project(&self.scratch, &mut self.w);
+        self.balance(|this, id| this.value(qp, id));
+        self.follow();
+    }
+
+    /// change ← what is missing in the working multipliers, and u₁, from the constraints' values and the residual in J-coordinates,
+    /// `w` (see the module header of `factor`).
+    fn balance(&mut self, value: impl Fn(&Self, usize) -> f64) {
+        let q = self.factor.q;
         for k in 0..q {
-            self.change[k] = -self.value(qp, self.working[k]);
+            self.change[k] = -value(self, self.working[k]);
         }
         self.factor.solve_transposed(&self.change, &mut self.u);
-        for k in q..self.n {
+        for k in 0..q {
+            self.change[k] = self.w[k] + self.u[k];
+        }
+        self.factor.solve(&mut self.change);
+    }
+
+    /// Takes over what [`balance`](Self::balance) has found; u₂ is from stationarity.
+    fn follow(&mut self) {
+        for k in self.factor.q..self.n {
             self.u[k] = -self.w[k];
         }
-        for k in 0..q {
-            self.w[k] += self.u[k];
-        }
-        self.factor.solve(&self.w, &mut self.change);
         self.factor.expand(&self.u, &mut self.d);
         for (k, &id) in self.working.iter().enumerate() {
             self.y[id] += self.change[k];
@@ -144,16 +154,18 @@ impl ActiveSet {
 
     /// Solves for the working set and drops constraints until every multiplier is within its limits.
     pub(super) fn make_dual_feasible(&mut self, qp: &Quadratic) -> Result<(), Failure> {
+        self.d.fill(0.0);
+        for &id in &self.working {
+            self.y[id] = 0.0;
+        }
+        self.stationarity(qp);
+        self.factor.project(&self.scratch, &mut self.w);
         loop {
-            self.d.fill(0.0);
-            for &id in &self.working {
-                self.y[id] = 0.0;
-            }
-            self.stationarity(qp);
-            self.correct(qp);
+            // At d = 0 and without working multipliers: dropping a constraint changes neither residual nor values.
+            self.balance(|this, id| this.constant(qp, id));
             let mut worst = (0.0, 0, Place::Off);
             for (k, &id) in self.working.iter().enumerate() {
-                let (y, limit) = (self.y[id], self.limit(qp, id));
+                let (y, limit) = (self.change[k], self.limit(qp, id));
                 let (excess, place) = if y > limit {
                     (y - limit, Place::Full)
                 } else if self.equality(qp, id) {
@@ -169,9 +181,14 @@ impl ActiveSet {
                 }
             }
             if worst.0 == 0.0 {
+                self.follow();
                 return Ok(());
             }
             self.leave(qp, worst.1, worst.2);
+            if worst.2 != Place::Off {
+                self.stationarity(qp);
+                self.factor.project(&self.scratch, &mut self.w);
+            }
         }
     }
 }

@@ -4,9 +4,8 @@ use super::PhaseWork;
 use crate::cycle::phase::Phase;
 use crate::flow::{Flow, Mesh};
 use crate::lgl::NODES;
-use crate::swing::Of;
 use piaffe_model::units::Units;
-use piaffe_model::{Description, FORWARD, UP};
+use piaffe_model::{Description, FORWARD};
 
 impl PhaseWork {
     /// Multipliers of the collocation equations, from the last element to the first.
@@ -30,49 +29,16 @@ impl PhaseWork {
 
     /// ∂L/∂β and ∂L/∂β̇ through the quantities of a node, β̈ eliminated; and the balance's multiplier.
     fn direct(&self, d: &Description, p: &Phase, node: usize) -> [f64; 3] {
-        let (nq, nj) = (d.orientations(), d.joints());
-        let y = p.instants.quantities;
-        let w = &self.weights[node * y.len()..][..y.len()];
+        let nq = d.orientations();
         let entry = |row: &[f64], order: usize| row[order * nq + d.unactuated];
-        let (mut beta, mut betad, mut betadd) = (0.0, 0.0, 0.0);
-        for (row, weight) in p.instants.forces(node).zip(w) {
-            beta += weight * entry(row, 0);
-            betad += weight * entry(row, 1);
-            betadd += weight * entry(row, 2);
-        }
-        for (weight, row) in w[y.shared()].iter().zip(p.instants.sharing(node)) {
-            beta += weight * entry(row, 0);
-            betad += weight * entry(row, 1);
-            betadd += weight * entry(row, 2);
-        }
-        for foot in 0..y.feet() {
-            let (factor, weight) = self.of_clearance(p, node, foot);
-            if weight == 0.0 {
-                continue;
-            }
-            let (row, weight) = (p.instants.of_foot(&p.mesh, node, foot, factor.of), weight * factor.value);
-            beta += weight * entry(row, 0);
-            if factor.of != Of::Height {
-                betad += weight * entry(row, 1);
-            }
-            if factor.of == Of::Acceleration {
-                betadd += weight * entry(row, 2);
-            }
-        }
+        let width = p.instants.width();
+        let state = &self.states[node * width..][..width];
         let row = p.instants.balance(node);
-        let balance = -betadd / entry(row, 2);
-        beta += balance * entry(row, 0);
-        betad += balance * entry(row, 1);
-        if d.unactuated < nj {
-            beta += w[y.angle(d.unactuated)];
-            betad += w[y.rate(d.unactuated)];
-        }
+        let balance = -entry(state, 2) / entry(row, 2);
         let (placement, shape) = (p.instants.placement(node), &p.shapes.placement);
-        beta += self.travel_weight(p, node) * placement[shape.p_q.index(FORWARD, d.unactuated)];
-        beta += w[y.height()] * placement[shape.p_q.index(UP, d.unactuated)];
-        for (weight, row) in w[y.heights()].iter().zip(p.instants.heights(node)) {
-            beta += weight * row[d.unactuated];
-        }
+        let travel = self.travel_weight(p, node) * placement[shape.p_q.index(FORWARD, d.unactuated)];
+        let beta = entry(state, 0) + balance * entry(row, 0) + travel;
+        let betad = entry(state, 1) + balance * entry(row, 1);
         [beta, betad, balance]
     }
 }

@@ -8,7 +8,7 @@
 //! Explicit curvature remains where parameters enter bilinearly: T with the polynomial's values, and
 //! the initial velocities and σ as functions of Θ through the impact (kernel `touchdown_curvature`).
 //!
-//! All terms of an instant are summed into a matrix W with Hessian W + Wᵀ: a product of two gradients
+//! Terms are summed into a matrix W with Hessian W + Wᵀ: a product of two gradients
 //! then is written once instead of twice.
 //!
 //! In the order of the computation: `weights`, `adjoint`, `instants`, `ends`; `products` of vectors and matrices.
@@ -23,13 +23,15 @@ use super::phase::Phase;
 use super::{Cycle, Variables};
 use piaffe_model::Description;
 use piaffe_model::shape::ModeShapes;
-use products::{add_transpose, congruence};
+use products::{add_transpose, cross_duration};
 
 /// Memory of the computation, allocated once.
 #[derive(Default)]
 pub struct Workspace {
     /// A row of local parameters, of the phase that has most.
     pub local: Vec<f64>,
+    /// A row of a state for each node, of the phase that has most.
+    pub states: Vec<f64>,
     phases: Vec<PhaseWork>,
     /// Half the projection of a phase's Hessian.
     half: Vec<f64>,
@@ -40,6 +42,14 @@ pub struct Workspace {
 struct PhaseWork {
     /// Weights of all quantities, a row per node: ∂L/∂quantity at fixed Θ.
     weights: Vec<f64>,
+    /// The same for the states' entries, a row per node.
+    states: Vec<f64>,
+    /// W in the state of each node.
+    seconds: Vec<f64>,
+    /// One vector of local parameters per unactuated row of G.
+    v: [Vec<f64>; 3],
+    /// A block of G times each parameter's part in (Q, Q̇, Q̈).
+    images: Vec<[f64; 3]>,
     /// Gradient of this phase's part of L in the local parameters.
     gradient: Vec<f64>,
     /// Weight of the platform's x at the end, minus that at the start.
@@ -61,10 +71,6 @@ struct PhaseWork {
     n: Vec<f64>,
     others: Vec<f64>,
     of_takeoff: Vec<f64>,
-    /// One vector of local parameters per unactuated column of G.
-    v: [Vec<f64>; 3],
-    /// A block of G times each parameter's part in (Q, Q̇, Q̈).
-    images: Vec<[f64; 3]>,
     scratch: Vec<f64>,
     local: Vec<f64>,
     /// The last step, in local parameters.
@@ -76,10 +82,15 @@ struct PhaseWork {
 impl PhaseWork {
     fn new(d: &Description, phase: &Phase) -> PhaseWork {
         let (np, shapes, nodes) = (phase.layout.len(), phase.shapes, phase.mesh.nodes.len());
+        let width = phase.instants.width();
         let z = |count: usize| vec![0.0; count];
         let leaves = phase.instants.leaving_at_rest().is_some();
         PhaseWork {
             weights: z(phase.linearized.len()),
+            states: z(nodes * width),
+            seconds: z(nodes * width * width),
+            v: [z(np), z(np), z(np)],
+            images: vec![[0.0; 3]; phase.layout.per_joint],
             gradient: z(np),
             travel: 0.0,
             landing: 0.0,
@@ -93,8 +104,6 @@ impl PhaseWork {
             n: shapes.curvature.n.zeros(),
             others: shapes.curvature.others.zeros(),
             of_takeoff: if leaves { d.shapes.takeoff_curvature.weights.zeros() } else { Vec::new() },
-            v: [z(np), z(np), z(np)],
-            images: vec![[0.0; 3]; phase.layout.per_joint],
             scratch: z(np),
             local: z(np),
             reach: z(np),
@@ -143,8 +152,10 @@ impl Workspace {
     pub fn new(d: &Description, variables: &Variables, phases: &[Phase]) -> Workspace {
         let n = variables.total();
         let most = phases.iter().map(|phase| phase.layout.len()).max().unwrap_or_default();
+        let states = phases.iter().map(|phase| phase.mesh.nodes.len() * phase.instants.width());
         Workspace {
             local: vec![0.0; most],
+            states: vec![0.0; states.max().unwrap_or_default()],
             phases: phases.iter().map(|phase| PhaseWork::new(d, phase)).collect(),
             half: vec![0.0; most * n],
             ends: EndWork::new(d, n),
@@ -157,17 +168,18 @@ impl Cycle<'_> {
     pub(super) fn lagrangian_hessian(&mut self, lambda: &[f64], mu: &[f64], hessian: &mut [f64]) {
         let n = self.variables.total();
         hessian.fill(0.0);
-        let Workspace { local, mut phases, mut half, mut ends } = std::mem::take(&mut self.workspace);
+        let Workspace { local, states, mut phases, mut half, mut ends } = std::mem::take(&mut self.workspace);
         for (k, work) in phases.iter_mut().enumerate() {
             self.weigh(k, lambda, mu, work);
             let p = &self.phases[k];
             work.adjoint(self.description(), &self.units, p, self.closures(k, lambda));
             work.h.fill(0.0);
             self.instant_terms(k, mu, work);
-            work.bilinear(p, self.per_work());
+            // T times the integral of the criterion.
+            cross_duration(&mut work.h, &p.cost_p, self.per_work(), p.layout.duration());
             add_transpose(&mut work.h, p.layout.len());
             // Θ through the parameters: first order twice, then second order once.
-            congruence(&work.h, &p.by_theta, n, &mut half, hessian);
+            p.by_theta.congruence(&work.h, &mut half, hessian);
             self.start_terms(k, &work.gradient, lambda, mu, &mut ends, hessian);
         }
         // The objective is a quotient of work and duration: its own curvature.
@@ -178,7 +190,7 @@ impl Cycle<'_> {
                 hessian[i * n + j] -= product / self.duration;
             }
         }
-        self.workspace = Workspace { local, phases, half, ends };
+        self.workspace = Workspace { local, states, phases, half, ends };
     }
 
     /// Multipliers of the closures of β and σ at the end of phase `k`.

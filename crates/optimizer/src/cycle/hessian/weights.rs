@@ -4,6 +4,7 @@ use super::PhaseWork;
 use crate::cycle::Cycle;
 use crate::cycle::phase::Phase;
 use crate::swing::Factor;
+use piaffe_sqp::combine;
 
 impl Cycle<'_> {
     /// ∂L/∂(quantities) of phase `k`, and the gradient of its part of L.
@@ -39,16 +40,14 @@ impl Cycle<'_> {
         let touchdown = self.rows.of(k).touchdown.map_or(0.0, |row| lambda[row]);
         work.landing = -touchdown / self.units.length;
 
-        // Gradient in the local parameters: all rows with their weights.
-        let np = p.layout.len();
+        // The same in the states, and from there in the local parameters: all rows with their weights.
+        let (np, width) = (p.layout.len(), p.instants.width());
         let gradient = &mut work.gradient;
         gradient.fill(0.0);
-        for node in 0..nodes {
-            for (row, w) in p.instants.gradients(node).chunks(np).zip(&work.weights[node * count..]) {
-                if *w != 0.0 {
-                    gradient.iter_mut().zip(row).for_each(|(g, r)| *g += w * r);
-                }
-            }
+        work.states.fill(0.0);
+        for (node, state) in work.states.chunks_mut(width).enumerate() {
+            combine(&work.weights[node * count..][..count], p.instants.gradients(node), state);
+            p.pull(self.description(), node, state, gradient);
         }
         let last = p.last() * np;
         let [beta, sigma] = self.closures(k, lambda);
@@ -62,7 +61,7 @@ impl Cycle<'_> {
         }
         gradient[p.layout.duration()] += p.cost.value * per_work;
         if let Some(fall) = p.fall(self.description()) {
-            fall.add_height_gradient(1.0, work.landing, gradient);
+            fall.add_height_gradient(1.0, work.landing, &mut gradient[p.layout.duration()..]);
         }
     }
 }
