@@ -52,7 +52,11 @@ fn crates_know_no_more_than_they_must() {
     assert_eq!(uses("codegen"), none, "the derivation knows no runtime");
     assert_eq!(uses("crates/verify"), ["model", "number"], "the verifier shares the description and the motion alone");
     assert_eq!(uses("crates/optimizer"), ["model", "number", "sqp", "verify"]);
-    assert_eq!(uses("crates/import"), ["codegen"]);
+    assert_eq!(
+        uses("crates/import"),
+        ["codegen", "interpreter", "model", "optimizer"],
+        "it tries the gaits that it writes, and knows no robot of the build"
+    );
     assert_eq!(uses("crates/interpreter"), ["codegen", "model"], "it derives what it gives, and asks nobody for more");
     assert_eq!(
         uses("crates/study"),
