@@ -25,7 +25,8 @@ const PAYS: f64 = 0.99;
 struct Outcome<'c> {
     candidate: &'c Candidate,
     variant: &'c Variant,
-    /// At each speed that was asked for, m/s, the least torque that was found, N²·m·s.
+    criterion: Criterion,
+    /// At each speed that was asked for, m/s, the least that was found.
     found: Vec<(f64, Option<f64>)>,
     /// What is in the way where nothing was found, of the slowest speed.
     obstacle: String,
@@ -91,7 +92,8 @@ fn attempt<'c>(robot: &str, candidate: &'c Candidate) -> Outcome<'c> {
 }
 
 fn attempt_variant<'c>(robot: &str, candidate: &'c Candidate, variant: &'c Variant) -> Outcome<'c> {
-    let mut outcome = Outcome { candidate, variant, found: Vec::new(), obstacle: String::new() };
+    let (criterion, found) = (Criterion::Torque, Vec::new());
+    let mut outcome = Outcome { candidate, variant, criterion, found, obstacle: String::new() };
     let file = |name: String, text: String| SpecFile { path: name, text };
     let files = RobotFiles {
         module: String::new(),
@@ -105,9 +107,13 @@ fn attempt_variant<'c>(robot: &str, candidate: &'c Candidate, variant: &'c Varia
     outcome
 }
 
-/// Looks for least torque, the smoother of the criteria, from slow to fast, until there is nothing any more.
+/// Looks for least torque, the smoother of the criteria, from slow to fast, until there is nothing any more. Where joints rub dry it
+/// is torques that jump, and energy is the smoother.
 fn search(gait: &dyn Gait, outcome: &mut Outcome) {
     let d = gait.description();
+    if d.joints.iter().any(|joint| joint.coulomb > 0.0) {
+        outcome.criterion = Criterion::Energy;
+    }
     let natural = (d.gravity * d.leg_length()).sqrt();
     let mut known: Vec<Vec<f64>> = Vec::new();
     for (k, share) in SPEEDS.into_iter().enumerate() {
@@ -117,7 +123,7 @@ fn search(gait: &dyn Gait, outcome: &mut Outcome) {
         }
         let speed = rounded(share * natural, 2);
         let starts = Some(if known.is_empty() { STARTS } else { STARTS_BESIDE });
-        let task = Task { gait, criterion: Criterion::Torque, speed };
+        let task = Task { gait, criterion: outcome.criterion, speed };
         let result = task.search(&Settings { starts, ..Settings::default() }, &known, &|_| {});
         if !result.is_optimal() && outcome.obstacle.is_empty() {
             outcome.obstacle = obstacle(&result);
