@@ -6,7 +6,7 @@ use super::symmetry::Arrangement;
 use super::write::number;
 use piaffe_codegen::spec::{RobotFile, parse_gait};
 
-/// A gait that legs like these have; whether these have it, a [trial](super::trial) tells.
+/// A gait that legs like these have; whether these have it, [`Import::tried`](super::Import::tried) tells.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
     pub name: String,
