@@ -186,6 +186,8 @@ fn what_is_asked_for_beside_the_files_is_what_files_would_say() {
     let heavier = optimum("--set links.platform.mass=7.65");
     assert!((cost(&optimum("--payload 1@0,0,0")) / cost(&heavier) - 1.0).abs() < 1e-9);
     assert!(cost(&heavier) > 1.05 * cost(&plain));
+    // The file says nothing of friction, and can be told.
+    assert!(cost(&optimum("--set joints.haunch.damping=0.2")) > 1.001 * cost(&plain));
     let flying =
         |asked: &str| result(folder.path(), &format!("optimize running_trot --speed 1 --starts 1 {asked}"), "");
     let slow = flying("--duration 0.2,0.5");

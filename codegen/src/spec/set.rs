@@ -32,22 +32,18 @@ pub fn set(text: &str, name: &str, value: f64) -> Option<String> {
     Some(changed)
 }
 
-/// The text of a file with a key that it lacks, beside a number of the same table; `None` if it has none.
+/// The text of a file with a key that it lacks, before the first key of its table; `None` if there is no such table.
 pub(super) fn insert(text: &str, name: &str, value: &str) -> Option<String> {
-    let (table, key) = name.rsplit_once('.')?;
-    let all = numbers(text);
-    let beside = all.iter().find_map(|number| {
-        let key = number.name.strip_prefix(table)?.strip_prefix('.')?;
-        (!key.contains('.')).then_some((number, key))
-    });
-    let (number, neighbour) = beside?;
-    let line = text[..number.span.start].rfind('\n').map_or(0, |end| end + 1);
-    let before = text[line..number.span.start].trim_end().strip_suffix('=')?.trim_end();
-    let before = before.trim_end_matches(['"', '\'']).strip_suffix(neighbour)?.trim_end_matches(['"', '\'']);
+    let (path, key) = name.rsplit_once('.')?;
+    let root = DeTable::parse(text).ok()?;
+    let table = path.split('.').try_fold(root.get_ref(), |table, part| table.get(part)?.get_ref().as_table())?;
+    let first = table.keys().map(|key| key.span().start).min()?;
+    let line = text[..first].rfind('\n').map_or(0, |end| end + 1);
+    let before = &text[line..first];
     let changed = match before.trim_end().chars().next_back() {
         // Inside of braces.
         Some('{' | ',') => {
-            let (head, tail) = text.split_at(line + before.len());
+            let (head, tail) = text.split_at(first);
             format!("{head}{key} = {value}, {tail}")
         }
         // A line of its own, below the table's name or behind it.
@@ -199,6 +195,9 @@ mod tests {
         assert_eq!(changed, "limits.body_clearance = 0.5\nlimits.\"friction\" = 1.0\n");
         let changed = set(ROBOT, "links.thigh.foot_mass", 0.1).unwrap();
         assert_eq!(changed, ROBOT.replace("mass = 1.6", "foot_mass = 0.1\nmass = 1.6"));
+        let joint = "[joints.knee]\nparent = \"a\"\nrange = [-1, 1]\n";
+        let changed = set(joint, "joints.knee.damping", 0.5).unwrap();
+        assert_eq!(changed, joint.replace("parent", "damping = 0.5\nparent"));
         assert_eq!(set(gait, "limits.swing_clearance", 1.0), None, "who has none must say so");
         assert_eq!(set("gravity = 9.81", "links.thigh.foot_mass", 1.0), None, "there is no such link");
         assert_eq!(set(gait, "limits.colour", 1.0), None);
