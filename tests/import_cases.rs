@@ -503,6 +503,32 @@ fn where_only_flight_makes_a_trot_possible_that_is_the_trot() {
     assert!(made.found[0].gait == "trot" && made.found[0].speeds.len() >= 3, "{:?}", made.found);
 }
 
+/// Where joints rub dry, what is asked for and told is energy; what the file says of it is found again.
+#[test]
+fn what_is_said_of_a_robot_that_rubs_is_of_energy() {
+    let rubbing = text("sensor_foot.urdf").replace("<limit ", r#"<dynamics friction="0.2"/><limit "#);
+    let made = import(&rubbing, &Options::default()).unwrap().tried(&|gait| gait == "walk");
+    let (_, walk) = &made.gaits[0];
+    let line = walk.lines().find(|line| line.starts_with("# Least")).unwrap();
+    let (cost, rest) = line
+        .strip_prefix("# Least energy that a short search found, N (local optima): ")
+        .unwrap()
+        .split_once(" at ")
+        .unwrap();
+    let (cost, speed): (f64, f64) = (cost.parse().unwrap(), rest.split_once(" m/s").unwrap().0.parse().unwrap());
+    let file = |path: &str, text: &str| SpecFile { path: path.into(), text: text.into() };
+    let files = RobotFiles {
+        module: String::new(),
+        robot: file("robot.toml", &made.robot),
+        gaits: vec![file("walk.toml", walk)],
+    };
+    let gait = piaffe::Robot::new(files).unwrap().gait("walk").unwrap();
+    let task = piaffe::search::local::Task { gait: &gait, criterion: piaffe::motion::Criterion::Energy, speed };
+    let settings = piaffe::search::multi_start::Settings { starts: Some(8), ..Default::default() };
+    let again = task.search(&settings, &[], &|_| {}).cost.unwrap();
+    assert!((again / cost - 1.0).abs() < 1e-4, "{line}: {again}");
+}
+
 /// `<dynamics>` of URDF and what MJCF calls `damping` and `frictionloss` are the specification's `damping` and `coulomb`.
 #[test]
 fn friction_is_taken_over_and_said() {

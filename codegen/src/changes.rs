@@ -78,7 +78,8 @@ impl Changes {
                     continue;
                 }
                 let value = duration[usize::from(end == "longest")];
-                gait.text = spec::set(&gait.text, &name, value).unwrap_or_else(|| gait.text.clone());
+                gait.text = spec::set(&gait.text, &name, value)
+                    .ok_or_else(|| format!("{} has no number `{name}`", gait.path))?;
             }
         }
         Ok(())

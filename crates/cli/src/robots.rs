@@ -108,9 +108,7 @@ fn of_build_files(module: &str, gaits: &[Loaded]) -> RobotFiles {
 fn read(files: Result<RobotFiles, String>, changes: &Changes) -> Result<Robot, String> {
     // What is wrong with the files themselves is said before what is set.
     let robot = files.and_then(|files| Robot::new(files).map_err(|why| why.to_string()))?;
-    let mut files = robot.files().clone();
-    changes.apply(&mut files)?;
-    Robot::new(files).map_err(|why| format!("with what is asked for, the robot is none:\n{why}"))
+    robot.changed(changes).map_err(|why| why.to_string())
 }
 
 impl Choice {

@@ -34,6 +34,10 @@ impl Candidate {
     }
 }
 
+pub fn file_name(gait: &str) -> String {
+    format!("{gait}.toml")
+}
+
 /// Candidates whose files build.
 pub struct Gaits {
     pub candidates: Vec<Candidate>,
@@ -66,7 +70,7 @@ const CLEARANCES: [f64; 3] = [0.02, 0.01, 0.005];
 pub fn find(robot: &Robot, arrangement: &Arrangement, file: &RobotFile) -> Gaits {
     let mut gaits = Gaits { candidates: Vec::new(), notes: Vec::new() };
     for plan in plans(robot, arrangement) {
-        let name = format!("{}.toml", plan.name);
+        let name = file_name(plan.name);
         let mut refused = String::new();
         let built = ["mirrored", "distinct"].into_iter().find_map(|halves| {
             let candidate = candidate(robot, &plan, halves);

@@ -2,7 +2,7 @@
 //! is no motion with more, and what was found is written into its file.
 
 use super::Import;
-use super::gaits::{Candidate, Variant};
+use super::gaits::{Candidate, Variant, file_name};
 use piaffe_codegen::{RobotFiles, SpecFile};
 use piaffe_interpreter::Robot;
 use piaffe_model::Gait;
@@ -72,10 +72,6 @@ struct Verdict {
 pub fn untried(candidates: &[Candidate]) -> Vec<(String, String)> {
     let grounded = candidates.iter().filter(|candidate| candidate.grounded.is_none());
     grounded.map(|candidate| (file_name(&candidate.name), candidate.file(&candidate.variants[0], &[]))).collect()
-}
-
-fn file_name(gait: &str) -> String {
-    format!("{gait}.toml")
 }
 
 /// The first variant of which something is found, else the last one.
@@ -211,8 +207,8 @@ impl Outcome<'_> {
                 None => missed.push(format!("{speed}")),
             }
         }
-        let mut lines =
-            vec![format!("Least torque that a short search found, N²·m·s (local optima): {}.", reached.join(", "))];
+        let (name, unit, reached) = (self.criterion.name(), self.criterion.unit(), reached.join(", "));
+        let mut lines = vec![format!("Least {name} that a short search found, {unit} (local optima): {reached}.")];
         if !missed.is_empty() {
             lines.push(format!("It found nothing at {} m/s.", missed.join(", ")));
         }

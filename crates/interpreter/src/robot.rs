@@ -76,6 +76,7 @@ impl Robot {
         let mut files = self.files.clone();
         changes.apply(&mut files).map_err(Unloadable::Specification)?;
         Robot::new(files)
+            .map_err(|why| Unloadable::Specification(format!("with what is asked for, the robot is none:\n{why}")))
     }
 
     /// The gait that a result carries with it, under its name there.

@@ -180,7 +180,7 @@ pub struct Joint {
 
 /// A joint rests while its rate is below this share of √(gravity/leg): what there is of a rate then is rounding, and dry friction
 /// asks nothing of the motor.
-pub const AT_REST: f64 = 1e-6;
+pub const RESTING_RATE: f64 = 1e-6;
 
 impl Joint {
     /// Whether its motor has friction to overcome.

@@ -4,7 +4,7 @@
 //! contains it. Torques of the motors, their power and their limits do.
 
 use piaffe_model::units::Units;
-use piaffe_model::{AT_REST, Description};
+use piaffe_model::{Description, RESTING_RATE};
 use piaffe_number::Scalar;
 
 /// That of a joint of a virtual leg: of all its real joints together.
@@ -41,7 +41,7 @@ impl<T: Scalar> Friction<T> {
         d.joints[joint].has_friction().then(|| Friction {
             damping: one(&|d| d.joints[joint].damping),
             coulomb: one(&|d| d.joints[joint].coulomb),
-            at_rest: AT_REST * Units::new(d).rate(),
+            at_rest: RESTING_RATE * Units::new(d).rate(),
         })
     }
 

@@ -7,7 +7,7 @@ use super::constraint::{Constraint, Tally};
 use super::contact::contact;
 use super::error::VerifyError;
 use super::instants::{Instants, State};
-use super::margins::{Units, clearance, steepness};
+use super::margins::{Units, at_rest, clearance, steepness};
 use super::numbers::Numbers;
 use super::phase::Phase;
 use super::quadrature::{Dry, integral, integral_of_magnitude};
@@ -109,7 +109,7 @@ pub fn evaluate(
         if joint.coulomb == 0.0 {
             totals.energy += integral_of_magnitude(powers, spacing);
         } else {
-            let rests = rates.iter().all(|rate| rate.abs() <= units.at_rest());
+            let rests = rates.iter().all(|rate| rate.abs() <= at_rest(description));
             let dry = Dry { coulomb: joint.coulomb, rates, rests, spacing };
             totals.energy += dry.energy(powers);
             totals.torque += dry.torque(torques);

@@ -8,7 +8,7 @@ use super::instants::State;
 use super::numbers::Numbers;
 use super::support::leg_length;
 use super::swing::Swing;
-use piaffe_model::{AT_REST, Description};
+use piaffe_model::{Description, RESTING_RATE};
 use piaffe_number::Scalar;
 
 /// A rate of this many radians per unit of time is a slow one.
@@ -33,6 +33,11 @@ pub struct Units {
     points: Vec<usize>,
 }
 
+/// A joint slower than this rests, rad/s.
+pub fn at_rest(description: &Description) -> f64 {
+    RESTING_RATE * (description.gravity / leg_length(description)).sqrt()
+}
+
 impl Units {
     pub fn new(description: &Description) -> Units {
         let (mass, leg, gravity) = (description.total_mass(), leg_length(description), description.gravity);
@@ -45,11 +50,6 @@ impl Units {
     /// A slow rate of an angle, rad/s: rates are judged relative to themselves where they are faster, else relative to this.
     pub fn rate(&self) -> f64 {
         SLOW / self.time
-    }
-
-    /// A joint slower than this rests, rad/s.
-    pub fn at_rest(&self) -> f64 {
-        AT_REST / self.time
     }
 
     /// Margins of the duration of phase `k`.

@@ -17,10 +17,11 @@
 use super::geometry::{Geometry, Space, Vec3};
 use super::heights::{Arms, alike};
 use super::instants::State;
+use super::margins::at_rest;
 use super::multibody::Multibody;
 use super::numbers::Numbers;
 use num_traits::Zero;
-use piaffe_model::{AT_REST, Description, Rotation};
+use piaffe_model::{Description, Rotation};
 use piaffe_number::Scalar;
 
 /// f1 below this share of (mass × leg²) counts as zero.
@@ -78,7 +79,7 @@ impl<'a, T: Scalar, G: Geometry<T>> Support<'a, T, G> {
             loads: vec![load; description.bodies.len()],
             carried: vec![(zero, still); description.bodies.len()],
             smallest_f1: VANISHING * description.total_mass() * length * length,
-            at_rest: AT_REST * (description.gravity / length).sqrt(),
+            at_rest: at_rest(description),
         }
     }
 

@@ -18,7 +18,7 @@ pub fn constraints<T: Scalar>(d: &Description, limits: &Limits<T>, y: &Quantitie
                 None if limit == Limit::Torque => Form::Linear { offset, terms: vec![(torque, by_torque)] },
                 None => Form::Linear { offset, terms: vec![(rate, by_rate), (torque, by_torque)] },
             };
-            list.push(PathConstraint { limit, of: joint.name.into(), form, unit, at_start: true, on_demand: false });
+            list.push(PathConstraint::new(limit, unit, form).of(joint.name));
         };
         for sign in [1.0, -1.0] {
             add(Limit::Torque, joint.max_torque, limits.max_torque, [T::zero(), T::from(-sign)]);

@@ -80,15 +80,13 @@ pub fn path_constraints_of<T: Scalar>(
 }
 
 impl<T: Scalar> PathConstraint<T> {
+    /// Imposed at every instant.
+    fn new(limit: Limit, unit: f64, form: Form<T>) -> PathConstraint<T> {
+        PathConstraint { limit, of: String::new(), form, unit, at_start: true, on_demand: false }
+    }
+
     fn linear(limit: Limit, unit: f64, offset: T, terms: Vec<(usize, T)>) -> PathConstraint<T> {
-        PathConstraint {
-            limit,
-            of: String::new(),
-            form: Form::Linear { offset, terms },
-            unit,
-            at_start: true,
-            on_demand: false,
-        }
+        PathConstraint::new(limit, unit, Form::Linear { offset, terms })
     }
 
     /// Whether it is imposed at this node of a phase.

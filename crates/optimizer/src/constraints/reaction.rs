@@ -15,14 +15,7 @@ pub fn constraints<T: Scalar>(d: &Description, limits: &Limits<T>, y: &Quantitie
     )];
     if d.lateral {
         let form = Form::Cone { normal: y.force(1), factor: limits.friction, tangential: vec![y.force(0), y.force(2)] };
-        list.push(PathConstraint {
-            limit: Limit::Friction,
-            of: String::new(),
-            form,
-            unit: weight,
-            at_start: true,
-            on_demand: false,
-        });
+        list.push(PathConstraint::new(Limit::Friction, weight, form));
     } else {
         for sign in [1.0, -1.0] {
             let terms = vec![(y.force(1), limits.friction), (y.force(0), T::from(sign))];

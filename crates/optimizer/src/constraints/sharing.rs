@@ -109,7 +109,7 @@ pub fn constraints<T: Scalar>(d: &Description, limits: &Limits<T>, y: &Quantitie
     for (member, offset) in leg.members.iter().zip(offsets(d)) {
         let mut add = |limit: Limit, of: String, unit: f64, joint: usize, formula: Of<T>| {
             let form = Form::Share(Share { quantities: quantities(d, y, joint), offset, weight, of: formula });
-            list.push(PathConstraint { limit, of, form, unit, at_start: true, on_demand: false });
+            list.push(PathConstraint::new(limit, unit, form).of(of));
         };
         let foot = || member.name.to_string();
         add(Limit::VerticalForceOfFoot, foot(), weight, 0, Of::Vertical(limits.min_vertical_force.scale(share)));
@@ -173,15 +173,14 @@ impl<T: Scalar> Of<T> {
             }
             gamma
         };
-        // Real legs move alike, so that each of the two has half of the virtual leg's.
-        let of_friction = |friction: Option<Friction<T>>| friction.map(|f| f.torque(v[RATE]).scale(0.5));
         match self {
             Of::Torque => torque_of_joint(),
             Of::Vertical(least) => vertical - least,
             Of::Friction(mu) => mu * vertical - length([forward, lateral], weight),
             Of::Actuator { bound, torque, rate, friction } => {
-                let mut motor = torque_of_joint();
-                of_friction(friction).into_iter().for_each(|friction| motor += friction);
+                let moving = torque_of_joint();
+                // Real legs move alike, so that each of the two has half of the virtual leg's.
+                let motor = friction.map_or(moving, |friction| moving + friction.torque(v[RATE]).scale(0.5));
                 bound - torque * motor - v[RATE].scale(rate)
             }
         }

@@ -6,8 +6,9 @@
 //! centre's parabola. Equalities: β̇ and β close the cycle (eq. 23, 24; the former as σ), feet land where they shall, and the
 //! mean speed is the given one.
 //!
-//! `phase` is one phase, `by_theta` how its parameters depend on Θ, `crossing` how it ends, `dip` a constraint between its nodes, `still` a joint that it holds, `rows` which
-//! equation and which limit is which row, `problem` the nonlinear program, `hessian` its second derivatives.
+//! `phase` is one phase, `by_theta` how its parameters depend on Θ, `crossing` how it ends, `dip` a constraint between its nodes,
+//! `still` a joint that it holds, `halt` one that just does not turn around, `rows` which equation and which limit is which row,
+//! `problem` the nonlinear program, `hessian` its second derivatives.
 
 mod by_theta;
 mod crossing;
