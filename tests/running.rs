@@ -72,12 +72,17 @@ fn runs_are_found_from_a_seed_alone_and_proven() {
 #[test]
 #[ignore = "minutes"]
 fn all_known_runs_are_found() {
+    let mut missed = Vec::new();
     for Known { gait, criterion, speed, value } in known() {
         let result = Task { gait: named(&gait), criterion, speed }.search(&Settings::default(), &[], &|_| {});
-        let cost = result.cost.unwrap_or_else(|| panic!("{gait} {criterion:?} at {speed} m/s: {}", result.message));
-        println!("{gait} {criterion:?} at {speed} m/s: {cost:.4}, known {value:.4}");
-        assert!(cost <= 1.002 * value, "{gait} {criterion:?} at {speed} m/s: {cost}, known is {value}");
+        let cost = result.cost.unwrap_or(f64::INFINITY);
+        let told = format!("{gait} {criterion:?} at {speed} m/s: {cost:.4}, known {value:.4}; {}", result.message);
+        println!("{told}");
+        if cost > 1.002 * value {
+            missed.push(told);
+        }
     }
+    assert!(missed.is_empty(), "{missed:#?}");
 }
 
 /// All real feet are in the air but where a phase begins or ends.
