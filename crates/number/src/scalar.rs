@@ -25,6 +25,7 @@ pub trait Scalar:
     /// Its sign: −1 or 1, and 0 where the magnitude is not above `rest`. Of a set it is the set of all signs; it has no derivative.
     fn side(self, rest: f64) -> Self;
     /// Times a plain number.
+    #[inline]
     fn scale(self, factor: f64) -> Self {
         self * Self::from(factor)
     }
@@ -45,6 +46,7 @@ macro_rules! assigning {
     };
     ([$($generics:tt)*] $type:ty: $trait:ident $method:ident $op:tt) => {
         impl<$($generics)*> std::ops::$trait for $type {
+            #[inline]
             fn $method(&mut self, other: Self) {
                 *self = *self $op other;
             }
@@ -57,26 +59,32 @@ impl Scalar for f64 {
         libm::sincos(self)
     }
 
+    #[inline]
     fn sqrt(self) -> f64 {
         f64::sqrt(self)
     }
 
+    #[inline]
     fn abs(self) -> f64 {
         f64::abs(self)
     }
 
+    #[inline]
     fn side(self, rest: f64) -> f64 {
         if f64::abs(self) <= rest { 0.0 } else { self.signum() }
     }
 
+    #[inline]
     fn scale(self, factor: f64) -> f64 {
         self * factor
     }
 
+    #[inline]
     fn value(self) -> f64 {
         self
     }
 
+    #[inline]
     fn least_magnitude(self) -> f64 {
         f64::abs(self)
     }
