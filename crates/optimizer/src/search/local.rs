@@ -15,11 +15,16 @@ const FEASIBILITY: f64 = 1e-8;
 const DENSE: f64 = 1e-7;
 /// Change of an active row between nodes at which it does (see `look`).
 const SETTLED: f64 = 1e-8;
+/// Violation (scaled) on a mesh twice as fine at which a mesh does not resolve the limits: where β is right at the ends of elements
+/// it may not be within.
+const UNRESOLVED: f64 = 5e-7;
 /// Share of the tolerance that is asked for once rows between nodes are known.
 const FIRM: f64 = 1e-2;
 /// Rounds after which a mesh must do on which they go on changing.
 const PATIENCE: usize = 5;
 const ROUNDS: usize = 20;
+/// Iterations after which a descent has got lost.
+const ITERATIONS: usize = 400;
 
 /// What is asked for: the cheapest motion of a gait at a mean speed (m/s).
 #[derive(Clone, Copy)]
@@ -70,6 +75,12 @@ pub struct Conflict {
 /// optimum a kink tells a step more than is true.
 const SMOOTHING: f64 = 0.028;
 
+/// Iterations that a descent gets among kinks as they are, where it may creep from one to the next.
+const AMONG_KINKS: usize = 60;
+/// After these they are rounded off once more, by less and less of what they were at first: from the optimum with the last of these
+/// it is not far to that with kinks.
+const LESS_AND_LESS: [f64; 3] = [0.2, 0.04, 0.008];
+
 /// Largest component of the first step from there, in natural sizes of the variables: kinks are known where they are, and
 /// hardly beyond.
 const CAUTION: f64 = 0.05;
@@ -82,7 +93,7 @@ pub fn options(cycle: &Cycle) -> Options {
     Options {
         tolerance: 1e-6,
         feasibility: FEASIBILITY,
-        iteration_limit: 400,
+        iteration_limit: ITERATIONS,
         step_limit: 1.0,
         estimate_multipliers: true,
         scale: Some(cycle.scale()),
@@ -93,6 +104,11 @@ pub fn options(cycle: &Cycle) -> Options {
 /// Options of the solver where an approximate solution will do.
 fn rough(options: &Options) -> Options {
     Options { tolerance: 5e-2, feasibility: 1e-3, ..options.clone() }
+}
+
+/// Options of the solver where kinks are rounded off more sharply than at first.
+fn rounded(options: &Options) -> Options {
+    Options { tolerance: 5e-4, feasibility: 1e-5, iteration_limit: 150, first_step_limit: CAUTION, ..options.clone() }
 }
 
 /// Called at every iteration; can stop the search.
@@ -172,7 +188,7 @@ impl Task<'_> {
             }
             iterations += local.iterations;
         }
-        let mut free = self.solve(start, &[], &[], first_step_limit, observe).local;
+        let mut free = self.free(start, first_step_limit, observe);
         iterations += free.iterations;
         let theta = free.theta.clone();
         for share in SLOW {
@@ -198,6 +214,29 @@ impl Task<'_> {
         Local { iterations, ..free }
     }
 
+    /// The optimum near `start` with no joint held, however many kinks are on the way.
+    fn free(&self, start: &[f64], first_step_limit: f64, observe: Observer) -> Local {
+        if self.criterion != Criterion::Energy {
+            return self.solve(start, &Way { first_step_limit, ..Way::FREE }, observe).local;
+        }
+        let local =
+            self.solve(start, &Way { first_step_limit, iteration_limit: AMONG_KINKS, ..Way::FREE }, observe).local;
+        if local.status != Status::IterationLimit {
+            return local;
+        }
+        let (mut theta, mut iterations) = (local.theta, local.iterations);
+        let mut cycle = self.cycle();
+        let options = rounded(&options(&cycle));
+        for share in LESS_AND_LESS {
+            cycle.smoothing = share * SMOOTHING;
+            let solution = sqp::minimize(&mut cycle, &theta, &options, observe);
+            iterations += solution.iterations;
+            theta = solution.x;
+        }
+        let local = self.solve(&theta, &Way::CAREFUL, observe).local;
+        Local { iterations: iterations + local.iterations, ..local }
+    }
+
     /// The optimum near `start` whose joints do not turn around where they nearly do, if there are any.
     fn halting(&self, start: &[f64], observe: Observer) -> Option<Local> {
         let mut found: Option<Local> = None;
@@ -213,7 +252,7 @@ impl Task<'_> {
                 continue;
             }
             kept.extend(more);
-            let local = self.solve(&theta, &[], &kept, CAUTION, observe).local;
+            let local = self.solve(&theta, &Way { halts: &kept, ..Way::CAREFUL }, observe).local;
             iterations += local.iterations;
             let settled = local.is_settled();
             found = Some(Local { iterations, ..local });
@@ -230,7 +269,7 @@ impl Task<'_> {
         let mut start = start.to_vec();
         let mut iterations = 0;
         loop {
-            let Solved { local, loose } = self.solve(&start, &held, &[], CAUTION, observe);
+            let Solved { local, loose } = self.solve(&start, &Way { still: &held, ..Way::CAREFUL }, observe);
             iterations += local.iterations;
             let Some(loose) = loose else { return Local { iterations, ..local } };
             held.retain(|still| !loose.joints.contains(still));
@@ -247,29 +286,23 @@ impl Task<'_> {
         if cycle.simulate(theta).is_ok() { cycle.still(share) } else { Vec::new() }
     }
 
-    /// The optimum near `start` with these joints held still, and these going on, on a mesh that resolves it.
-    fn solve(
-        &self,
-        start: &[f64],
-        still: &[Still],
-        halts: &[Halt],
-        first_step_limit: f64,
-        observe: Observer,
-    ) -> Solved {
+    /// The optimum near `start`, on a mesh that resolves it.
+    fn solve(&self, start: &[f64], way: &Way, observe: Observer) -> Solved {
         let go_on = |cycle: &mut Cycle, theta: &[f64]| {
-            if !halts.is_empty() && cycle.simulate(theta).is_ok() {
-                cycle.keep_going(halts);
+            if !way.halts.is_empty() && cycle.simulate(theta).is_ok() {
+                cycle.keep_going(way.halts);
             }
         };
         let mut cycle = self.cycle();
-        cycle.hold(still);
+        cycle.hold(way.still);
         go_on(&mut cycle, start);
-        let mut found = settle(&mut cycle, start, first_step_limit, observe);
+        let mut found = settle(&mut cycle, start, way, observe);
         while found.solution.status.is_optimal()
-            && let Some(mut finer) = if found.settled { cycle.finer() } else { cycle.twice_as_fine() }
+            && let Some(mut finer) =
+                if found.settled { unresolved(&cycle, &found.solution.x) } else { cycle.twice_as_fine() }
         {
             go_on(&mut finer, &found.solution.x);
-            let mut better = settle(&mut finer, &found.solution.x, CAUTION, observe);
+            let mut better = settle(&mut finer, &found.solution.x, &Way::CAREFUL, observe);
             if !better.solution.status.is_optimal() {
                 // What does not become an optimum there stays what it is: its receipt tells.
                 found.solution.iterations += better.solution.iterations;
@@ -279,6 +312,32 @@ impl Task<'_> {
             (found, cycle) = (better, finer);
         }
         finish(&mut cycle, found.solution, found.violation)
+    }
+}
+
+/// How an optimum is sought from a start.
+#[derive(Clone, Copy)]
+struct Way<'w> {
+    /// Joints that are held still.
+    still: &'w [Still],
+    /// Joints that go on where they nearly turn around.
+    halts: &'w [Halt],
+    first_step_limit: f64,
+    iteration_limit: usize,
+}
+
+impl Way<'static> {
+    /// With nothing held, and steps of any length.
+    const FREE: Way<'static> =
+        Way { still: &[], halts: &[], first_step_limit: f64::INFINITY, iteration_limit: ITERATIONS };
+    /// With a short first step.
+    const CAREFUL: Way<'static> = Way { first_step_limit: CAUTION, ..Way::FREE };
+}
+
+impl Way<'_> {
+    fn options(&self, options: &Options) -> Options {
+        let Way { first_step_limit, iteration_limit, .. } = *self;
+        Options { first_step_limit, iteration_limit, ..options.clone() }
     }
 }
 
@@ -305,11 +364,11 @@ fn look(cycle: &mut Cycle, solution: &Solution) -> Result<(f64, f64), Undefined>
 }
 
 /// The optimum near `start`, with constraints imposed between nodes where they dip.
-fn settle(cycle: &mut Cycle, start: &[f64], first_step_limit: f64, observe: Observer) -> Settled {
+fn settle(cycle: &mut Cycle, start: &[f64], way: &Way, observe: Observer) -> Settled {
     let options = options(cycle);
     between_nodes(cycle, start, |cycle, theta, round| {
         if round == 0 {
-            return sqp::minimize(cycle, theta, &Options { first_step_limit, ..options.clone() }, observe);
+            return sqp::minimize(cycle, theta, &way.options(&options), observe);
         }
         // With rows that have moved a little the conditions may hold to the tolerance at the old place still, though not as well
         // with any other multipliers; a step further they do.
@@ -323,6 +382,15 @@ fn settle(cycle: &mut Cycle, start: &[f64], first_step_limit: f64, observe: Obse
             solution.status = Status::Optimal;
         }
         solution
+    })
+}
+
+/// The problem with twice as many elements, if these do not resolve the last simulated motion, which is `theta`, or its limits.
+fn unresolved<'a>(cycle: &Cycle<'a>, theta: &[f64]) -> Option<Cycle<'a>> {
+    cycle.finer().or_else(|| {
+        let mut finer = cycle.twice_as_fine()?;
+        let broken = finer.simulate(theta).and_then(|()| dips(&finer)).is_ok_and(|seen| seen.violation > UNRESOLVED);
+        broken.then_some(finer)
     })
 }
 
