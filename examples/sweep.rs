@@ -10,7 +10,13 @@ fn main() {
     let mut before: Vec<Vec<f64>> = Vec::new();
     for speed in [0.3, 0.45, 0.6, 0.75, 0.9] {
         let task = Task { gait: &Trot, criterion: Criterion::Energy, speed };
-        let found = search_from(&task, &Settings { starts: Some(2), seed: 1 }, &before, Expected::Theirs, &|_| {});
+        let found = search_from(
+            &task,
+            &Settings { starts: Some(2), seed: 1, ..Settings::default() },
+            &before,
+            Expected::Theirs,
+            &|_| {},
+        );
         let Some(best) = found.optima.first() else {
             println!("{speed} m/s: no trot");
             continue;

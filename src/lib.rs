@@ -21,8 +21,8 @@ pub use piaffe_model as model;
 pub use piaffe_model::{motion, units};
 pub use piaffe_number as number;
 pub use piaffe_optimizer::{
-    altered, audit, constraints, cost, cycle, finite, flow, four_legs, instant, optimality, optimize, origin, readback,
-    result, search, sensitivity, stability, states, trajectory, verdict, walk,
+    altered, audit, constraints, cost, cycle, examine, finite, flow, four_legs, instant, optimality, optimize, origin,
+    readback, result, search, sensitivity, stability, states, trajectory, verdict, walk,
 };
 #[cfg(feature = "report")]
 pub use piaffe_report as report;

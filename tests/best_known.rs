@@ -51,9 +51,9 @@ fn meet(record: &Record) -> Result<(), String> {
     let gait = if record.robot == "loose" { &loosened } else { gait };
     let mut best = f64::INFINITY;
     for starts in [8, 32, 128, 512] {
-        let settings = Settings { starts: Some(starts), seed: 1 };
+        let settings = Settings { starts: Some(starts), seed: 1, ..Settings::default() };
         let found = search(gait, record.criterion, record.speed, &settings, &|_| {});
-        let result = GaitResult::new(gait, record.criterion, record.speed, &found, settings.seed, || 0.0);
+        let result = GaitResult::new(gait, record.criterion, record.speed, &found, &settings, || 0.0);
         best = best.min(result.cost.unwrap_or(f64::INFINITY));
         let Record { robot, gait, criterion, speed, cost } = record;
         let name = format!("{robot} {gait}, {} at {speed} m/s", criterion.name());

@@ -132,6 +132,35 @@ fn optimize_writes_json_with_a_receipt() {
 }
 
 #[test]
+fn how_closely_an_optimum_is_looked_at_is_a_choice() {
+    let folder = tempfile::tempdir().unwrap();
+    let entries = ["certificate", "sensitivities", "stability", "real_legs"];
+    for (level, missing) in [("none", &entries[..]), ("quick", &["certificate", "real_legs"]), ("full", &[])] {
+        let file = folder.path().join(format!("{level}.json"));
+        let file = file.to_str().unwrap();
+        let asked = ["optimize", "trot", "--speed", "0.6", "--starts", "1", "--examine", level, "--json", file];
+        let out = piaffe(&asked, "");
+        assert!(out.status.success(), "{}", text(&out.stderr));
+        let result: Value = serde_json::from_str(&std::fs::read_to_string(file).unwrap()).unwrap();
+        let open: Vec<_> = result["not_examined"].as_array().into_iter().flatten().map(|open| &open["entry"]).collect();
+        for entry in entries {
+            let absent = missing.contains(&entry);
+            assert_eq!(result.get(entry).is_none_or(Value::is_null), absent, "{level}: {entry}");
+            assert_eq!(open.iter().any(|open| **open == entry), absent, "{level}: {open:?}");
+        }
+        let out = piaffe(&["verify", file], "");
+        assert!(out.status.success(), "{level}: {}", text(&out.stdout));
+    }
+    // Who leaves something out without a word is not confirmed.
+    let file = folder.path().join("none.json");
+    let whole = std::fs::read_to_string(&file).unwrap();
+    let mut result: Value = serde_json::from_str(&whole).unwrap();
+    result.as_object_mut().unwrap().remove("not_examined");
+    std::fs::write(&file, result.to_string()).unwrap();
+    assert_eq!(piaffe(&["verify", file.to_str().unwrap()], "").status.code(), Some(4));
+}
+
+#[test]
 fn an_infeasible_speed_is_said_and_fails() {
     let out = piaffe(&["optimize", "trot", "--speed", "5", "--starts", "2", "--json", "-"], "");
     assert_eq!(out.status.code(), Some(3));

@@ -5,6 +5,7 @@ mod robot;
 
 use piaffe::Robot;
 use piaffe::cycle::{Cycle, theta};
+use piaffe::examine::Examination;
 use piaffe::four_legs::Lift;
 use piaffe::interpreter::Interpreted;
 use piaffe::model::Gait;
@@ -29,16 +30,16 @@ fn speed(gait: &dyn Gait) -> f64 {
 }
 
 fn optima(gait: &dyn Gait, criterion: Criterion) -> GaitResult {
-    let settings = Settings { starts: Some(4), seed: 1 };
+    let settings = Settings { starts: Some(4), seed: 1, ..Settings::default() };
     let found = search(gait, criterion, speed(gait), &settings, &|_| {});
-    let mut result = GaitResult::new(gait, criterion, speed(gait), &found, settings.seed, || 0.0);
-    result.examine(gait);
+    let mut result = GaitResult::new(gait, criterion, speed(gait), &found, &settings, || 0.0);
+    result.examine(gait, Examination::Full);
     result
 }
 
 /// A motion at which nothing in particular is optimal.
 fn motion(gait: &dyn Gait) -> Motion {
-    let settings = Settings { starts: Some(1), seed: 1 };
+    let settings = Settings { starts: Some(1), seed: 1, ..Settings::default() };
     search(gait, Criterion::Torque, speed(gait), &settings, &|_| {}).optima[0].local.motion.clone()
 }
 
@@ -183,7 +184,7 @@ fn slopes_in_friction_are_those_of_optima_of_other_robots() {
     for name in GAITS {
         let gait = robot.gait(name).unwrap();
         for criterion in Criterion::ALL {
-            let settings = Settings { starts: Some(4), seed: 1 };
+            let settings = Settings { starts: Some(4), seed: 1, ..Settings::default() };
             let local = search(&gait, criterion, speed(&gait), &settings, &|_| {}).optima[0].local.clone();
             let found = sensitivities(&gait, criterion, speed(&gait), &local.motion).unwrap();
             let best = local.costs.of(criterion);

@@ -14,9 +14,9 @@ use piaffe::verify::{sample, verify};
 use walking::walking;
 
 fn optimize(gait: &dyn Gait, criterion: Criterion, speed: f64, starts: usize) -> GaitResult {
-    let settings = Settings { starts: Some(starts), seed: 1 };
+    let settings = Settings { starts: Some(starts), seed: 1, ..Settings::default() };
     let found = search(gait, criterion, speed, &settings, &|_| {});
-    GaitResult::new(gait, criterion, speed, &found, settings.seed, || 0.0)
+    GaitResult::new(gait, criterion, speed, &found, &settings, || 0.0)
 }
 
 fn named(name: &str) -> &'static dyn Gait {
@@ -59,7 +59,8 @@ fn the_receipt_agrees_with_the_optimizer_that_shares_no_code_with_it() {
 #[test]
 fn a_spoilt_motion_gets_no_receipt() {
     let gait = named("trot");
-    let found = search(gait, Criterion::Energy, 0.6, &Settings { starts: Some(1), seed: 1 }, &|_| {});
+    let found =
+        search(gait, Criterion::Energy, 0.6, &Settings { starts: Some(1), seed: 1, ..Settings::default() }, &|_| {});
     let good = found.optima[0].local.motion.clone();
     let spoil = |change: &dyn Fn(&mut Motion)| {
         let mut motion = good.clone();
@@ -76,7 +77,8 @@ fn forces_and_torques_move_the_robot_as_newton_says() {
     // Over a half step, impulse of the reaction and weight = change of momentum; checked by finite
     // differences of the platform's path, which no dynamics enters.
     let gait = named("curvet");
-    let found = search(gait, Criterion::Torque, 0.6, &Settings { starts: Some(1), seed: 1 }, &|_| {});
+    let found =
+        search(gait, Criterion::Torque, 0.6, &Settings { starts: Some(1), seed: 1, ..Settings::default() }, &|_| {});
     let motion = &found.optima[0].local.motion;
     let samples = sample(gait.description(), motion, 401).unwrap();
     let d = gait.description();

@@ -39,7 +39,7 @@ fn a_search_where_no_start_leads_anywhere_ends_before_long() {
 
 #[test]
 fn a_given_number_of_starts_is_kept_to_and_threads_do_not_matter() {
-    let settings = Settings { starts: Some(20), seed: 3 };
+    let settings = Settings { starts: Some(20), seed: 3, ..Settings::default() };
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let (one, many) = (alone.install(|| searched("amble", 0.9, &settings)), searched("amble", 0.9, &settings));
     assert_eq!(one.effort.starts + one.effort.informed, 20);

@@ -10,6 +10,7 @@ mod walking;
 
 use copy::{Copy, Factors};
 use piaffe::cycle::{Cycle, theta};
+use piaffe::examine::Examination;
 use piaffe::gaits::GAITS;
 use piaffe::model::Gait;
 use piaffe::motion::Criterion;
@@ -24,10 +25,10 @@ use walking::walking;
 const SIZES: [(f64, f64); 4] = [(1e-3, 1e-6), (1e2, 1e6), (1e-3, 1e3), (30.0, 1e-4)];
 
 fn optimize(gait: &dyn Gait, criterion: Criterion, speed: f64, starts: usize) -> GaitResult {
-    let settings = Settings { starts: Some(starts), seed: 1 };
+    let settings = Settings { starts: Some(starts), seed: 1, ..Settings::default() };
     let found = search(gait, criterion, speed, &settings, &|_| {});
-    let mut result = GaitResult::new(gait, criterion, speed, &found, settings.seed, || 0.0);
-    result.examine(gait);
+    let mut result = GaitResult::new(gait, criterion, speed, &found, &settings, || 0.0);
+    result.examine(gait, Examination::Full);
     result
 }
 

@@ -56,8 +56,8 @@ fn shifted(range: &str, zero: f64) -> String {
 
 fn optimum(robot: &Robot, gait: &str, criterion: Criterion, speed: f64) -> GaitResult {
     let gait = robot.gait(gait).unwrap();
-    let settings = Settings { starts: Some(8), seed: 1 };
-    GaitResult::new(&gait, criterion, speed, &search(&gait, criterion, speed, &settings, &|_| {}), 1, || 0.0)
+    let settings = Settings { starts: Some(8), seed: 1, ..Settings::default() };
+    GaitResult::new(&gait, criterion, speed, &search(&gait, criterion, speed, &settings, &|_| {}), &settings, || 0.0)
 }
 
 fn same_optima(folder: &str, leg: &Leg, gait: &str) {

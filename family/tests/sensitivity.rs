@@ -20,7 +20,8 @@ fn slopes_are_those_of_optima_of_other_robots() {
             continue; // A bound has optima of least energy beside each other: another robot's is soon another one.
         }
         let gait = *GAITS.iter().find(|g| g.description().key == key).unwrap();
-        let found = search(gait, criterion, SPEED, &Settings { starts: Some(2), seed: 1 }, &|_| {});
+        let found =
+            search(gait, criterion, SPEED, &Settings { starts: Some(2), seed: 1, ..Settings::default() }, &|_| {});
         let near: &Local = &found.optima[0].local;
         let best = near.costs.of(criterion);
         let cost = |names: &[String], value: f64| {

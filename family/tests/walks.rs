@@ -24,7 +24,7 @@ fn random_robots_trot_or_say_why_not() {
         for k in 0..ROBOTS {
             let robot = member(family, &NEAR, &mut rng);
             let found = search(&*robot, criterion, SPEED, &settings, &|_| ());
-            let result = GaitResult::new(&*robot, criterion, SPEED, &found, settings.seed, || 0.0);
+            let result = GaitResult::new(&*robot, criterion, SPEED, &found, &settings, || 0.0);
             if k < AUDITED {
                 let audit = Audit::of(&result, &[&*robot]);
                 assert!(result.variables.is_empty() || audit.is_confirmed(), "{k}: {:?}", audit.objection());

@@ -10,6 +10,7 @@ from ._piaffe import Gait
 from ._result import Result
 
 Criterion = Literal["energy", "torque"]
+Examination = Literal["none", "quick", "full"]
 
 
 def optimize(
@@ -21,6 +22,7 @@ def optimize(
     real_legs: bool = False,
     starts: int | None = None,
     seed: int = 1,
+    examine: Examination = "full",
     threads: int | None = None,
 ) -> Result:
     """The cheapest periodic motion of a gait at a mean forward speed (m/s), as far as local searches can tell.
@@ -28,7 +30,8 @@ def optimize(
     `criterion` is what is least per metre: the work of the actuators ("energy", N) or the squares of their torques ("torque",
     N²·m·s). `set` puts other numbers in the place of the specification's, as `Robot.set` does. With `real_legs` the limits hold at
     each real leg too. `starts` is their number, a default walk and random ones of `seed`; if it is not given, as many as the optima
-    found let expect others. The answer is the same for any number of `threads`, by default all cores.
+    found let expect others. `examine` is how closely to look at an optimum: "none" is its receipt, "quick" its slopes and stability
+    too, "full" also the proof between the receipt's instants and the real legs. The answer is the same for any number of `threads`, by default all cores.
 
     Whether there is an optimum, and why not, is in the result: `status`, `message`. Ctrl-C ends the search.
 
@@ -36,4 +39,4 @@ def optimize(
     """
     if set:
         gait = gait.set(set)
-    return Result(_piaffe.optimize(gait, speed, criterion, real_legs, starts, seed, threads))
+    return Result(_piaffe.optimize(gait, speed, criterion, real_legs, starts, seed, examine, threads))

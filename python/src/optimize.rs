@@ -5,6 +5,7 @@ use crate::result::text;
 use crate::robot::Gait;
 use crate::work::{Stop, work};
 use piaffe::Task;
+use piaffe::examine::Examination;
 use piaffe::motion::Criterion;
 use piaffe::search::multi_start::Settings;
 use piaffe::sqp::Control;
@@ -28,13 +29,21 @@ pub fn speed(speed: f64) -> PyResult<f64> {
 pub fn settings(starts: Option<usize>, seed: u64) -> PyResult<Settings> {
     match starts {
         Some(0) => Err(Error::new_err("`starts` is 0: give at least 1, or None for as many as the evidence asks for")),
-        starts => Ok(Settings { starts, seed }),
+        starts => Ok(Settings { starts, seed, ..Settings::default() }),
     }
+}
+
+/// How closely to look at an optimum.
+fn examination(name: &str) -> PyResult<Examination> {
+    Examination::by_name(name).ok_or_else(|| {
+        let known = Examination::ALL.map(|level| format!("\"{}\"", level.name())).join(", ");
+        Error::new_err(format!("`examine` is \"{name}\": give one of {known}"))
+    })
 }
 
 /// The result as JSON.
 #[pyfunction]
-#[pyo3(signature = (gait, speed, criterion, real_legs, starts, seed, threads))]
+#[pyo3(signature = (gait, speed, criterion, real_legs, starts, seed, examine, threads))]
 #[allow(clippy::too_many_arguments)]
 pub fn optimize(
     py: Python<'_>,
@@ -44,10 +53,12 @@ pub fn optimize(
     real_legs: bool,
     starts: Option<usize>,
     seed: u64,
+    examine: &str,
     threads: Option<usize>,
 ) -> PyResult<String> {
     let (criterion, speed) = (self::criterion(criterion)?, self::speed(speed)?);
-    let (gait, settings) = (gait.derived(), settings(starts, seed)?);
+    let settings = Settings { examination: examination(examine)?, ..settings(starts, seed)? };
+    let gait = gait.derived();
     let answer = work(py, threads, Stop::default(), move |stop| {
         let watch = |_| if stop.is_wanted() { Control::Stop } else { Control::Continue };
         Task { gait: &*gait, criterion, speed }.answer(real_legs, &settings, &watch)

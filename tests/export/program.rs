@@ -16,7 +16,7 @@ pub fn optimum(gait: &dyn Gait, criterion: Criterion) -> (GaitResult, Motion) {
 pub fn optimum_at(gait: &dyn Gait, criterion: Criterion, speed: f64) -> (GaitResult, Motion) {
     let settings = Settings::default();
     let found = search(gait, criterion, speed, &settings, &|_| {});
-    let result = GaitResult::new(gait, criterion, speed, &found, settings.seed, || 0.0);
+    let result = GaitResult::new(gait, criterion, speed, &found, &settings, || 0.0);
     let motion = result.motion().unwrap();
     (result, motion)
 }

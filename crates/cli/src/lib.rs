@@ -31,11 +31,12 @@ mod whole;
 
 use asked::Asked;
 pub use built::Build;
-use clap::builder::{PossibleValuesParser, ValueParser};
+use clap::builder::{PossibleValuesParser, TypedValueParser, ValueParser};
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
 use piaffe_codegen::Changes;
 use piaffe_model::motion::Criterion;
+use piaffe_optimizer::examine::Examination;
 use piaffe_optimizer::search::local::Task;
 use piaffe_optimizer::search::multi_start::Settings;
 use robots::by_name;
@@ -81,6 +82,9 @@ struct Arguments {
     /// Needs no compiler. Where the folder model-spec/ is here and has changed since the build, its files are taken too.
     #[arg(long, global = true, value_name = "DIR")]
     robot: Option<PathBuf>,
+    /// How closely to look at the optima of the main job: none, quick or full (see `piaffe optimize --help`).
+    #[arg(long, value_parser = examinations(), default_value = "full", value_name = "LEVEL")]
+    examine: Examination,
     #[command(flatten)]
     asked: Asked,
     /// Say nothing but errors, and what was asked for with `-`.
@@ -151,6 +155,10 @@ enum Command {
         /// Number of starts, a default walk and random ones; if it is not given, as many as the optima found let expect others.
         #[arg(long, value_parser = clap::value_parser!(u32).range(1..=100_000))]
         starts: Option<u32>,
+        /// How closely to look at what is found: `none` is its receipt, `quick` its slopes and stability too, `full` also the proof
+        /// between the receipt's instants and the real legs.
+        #[arg(long, value_parser = examinations(), default_value = "full", value_name = "LEVEL")]
+        examine: Examination,
         /// Write the whole result as JSON; `-` is standard output.
         #[arg(long, value_name = "FILE|-")]
         json: Option<String>,
@@ -251,6 +259,10 @@ enum Command {
         /// Of the random starts.
         #[arg(long, default_value_t = 1)]
         seed: u64,
+        /// How closely to look at what is found: `none` is its receipt, `quick` its slopes and stability too, `full` also the proof
+        /// between the receipt's instants and the real legs.
+        #[arg(long, value_parser = examinations(), default_value = "full", value_name = "LEVEL")]
+        examine: Examination,
     },
     /// Set two results side by side: numbers that differ, costs, limits, and how much of the difference the numbers explain.
     ///
@@ -410,14 +422,14 @@ fn gait_names_or_all() -> ValueParser {
 fn answer(arguments: Arguments) -> anyhow::Result<bool> {
     let of_paper = arguments.robot.is_none() && arguments.asked.changes().is_empty();
     match arguments.command {
-        None => main_job::run(&arguments.out, of_paper),
+        None => main_job::run(&arguments.out, of_paper, arguments.examine),
         Some(Command::Check { folder, svg }) => check::run(&folder, svg.as_deref()),
         Some(Command::Dynamics { gait, file }) => dynamics::run(by_name(&gait)?, &file),
         Some(Command::Model { gait, latex, json }) => model::run(by_name(&gait)?, latex, json.as_deref()),
         Some(Command::Import(arguments)) => import::run(arguments),
-        Some(Command::Optimize { gait, criterion, speed, seed, real_legs, starts, json }) => {
+        Some(Command::Optimize { gait, criterion, speed, seed, real_legs, starts, examine, json }) => {
             let task = Task { gait: by_name(&gait)?, criterion: criterion_by_name(&criterion), speed };
-            optimize::run(task, real_legs, &settings(starts, seed), json.as_deref())
+            optimize::run(task, real_legs, &settings(starts, seed, examine), json.as_deref())
         }
         Some(Command::Completions { shell }) => manual::completions(shell),
         Some(Command::Manual { out }) => manual::pages(&out),
@@ -425,14 +437,14 @@ fn answer(arguments: Arguments) -> anyhow::Result<bool> {
         Some(Command::Lift { result, rate, format, out }) => lift::run(&result, format, rate, &out),
         Some(Command::Verify { results, json }) => verify::run(&results, json.as_deref()),
         Some(Command::Report { results, detail, out }) => report::run(&results, detail, &out),
-        Some(Command::Sweep { gait, criterion, speeds, real_legs, folder, starts, seed }) => {
+        Some(Command::Sweep { gait, criterion, speeds, real_legs, folder, starts, seed, examine }) => {
             let named = || gait.iter().map(|gait| by_name(gait)).collect::<anyhow::Result<_>>();
             let gaits: Vec<_> = match &gait[..] {
                 [] => robots::first()?.into_iter().filter(|gait| !gait.description().flies()).collect(),
                 names if names.iter().any(|name| name == ALL) => robots::first()?,
                 _ => named()?,
             };
-            sweep::run(&gaits, real_legs, &criteria(&criterion), &speeds, &folder, &settings(starts, seed))
+            sweep::run(&gaits, real_legs, &criteria(&criterion), &speeds, &folder, &settings(starts, seed, examine))
         }
         Some(Command::Diff { a, b, json }) => diff::run(&a, &b, json.as_deref()),
         Some(Command::Study(arguments)) => study::run(arguments),
@@ -440,8 +452,8 @@ fn answer(arguments: Arguments) -> anyhow::Result<bool> {
     }
 }
 
-fn settings(starts: Option<u32>, seed: u64) -> Settings {
-    Settings { starts: starts.map(|n| n as usize), seed }
+fn settings(starts: Option<u32>, seed: u64, examination: Examination) -> Settings {
+    Settings { starts: starts.map(|n| n as usize), seed, examination }
 }
 
 /// Those that are wanted by name, or all.
@@ -452,6 +464,11 @@ fn criteria(wanted: &[String]) -> Vec<Criterion> {
 
 fn criterion_names() -> PossibleValuesParser {
     PossibleValuesParser::new(Criterion::ALL.map(Criterion::name))
+}
+
+fn examinations() -> impl TypedValueParser<Value = Examination> {
+    let names = PossibleValuesParser::new(Examination::ALL.map(Examination::name));
+    names.map(|name| Examination::by_name(&name).unwrap_or_default())
 }
 
 /// The criterion of that name; the parser has admitted no other names.

@@ -6,6 +6,7 @@ use super::optimize::progress;
 use super::{output, report, robots};
 use piaffe_model::Gait;
 use piaffe_model::motion::Criterion;
+use piaffe_optimizer::examine::Examination;
 use piaffe_optimizer::result::Receipt;
 use piaffe_optimizer::search::local::Task;
 use piaffe_optimizer::search::multi_start::Settings;
@@ -49,12 +50,12 @@ struct Table {
 }
 
 /// `of_paper` tells whether the robot is the one whose values were published.
-pub fn run(folder: &Path, of_paper: bool) -> anyhow::Result<bool> {
+pub fn run(folder: &Path, of_paper: bool, examination: Examination) -> anyhow::Result<bool> {
     let started = Instant::now();
     std::fs::create_dir_all(folder).map_err(|e| anyhow::anyhow!("cannot create {}: {e}", folder.display()))?;
     let mut records: Vec<Record> = Vec::new();
     let mut between = "";
-    for table in tables(of_paper)? {
+    for table in tables(of_paper, examination)? {
         output::say!("{between}{} at {} m/s\n", table.title, table.speed);
         let starts = table.fill(folder, &mut records)?;
         output::say!("\nEvery optimum is local: the best of {starts} starts.");
@@ -77,7 +78,7 @@ pub fn run(folder: &Path, of_paper: bool) -> anyhow::Result<bool> {
 }
 
 /// Those that have gaits.
-fn tables(of_paper: bool) -> anyhow::Result<Vec<Table>> {
+fn tables(of_paper: bool, examination: Examination) -> anyhow::Result<Vec<Table>> {
     let (flying, mut walking): (Vec<_>, Vec<_>) = robots::first()?.into_iter().partition(|g| g.description().flies());
     // In the order of the paper.
     walking.sort_by_key(|g| PUBLISHED.iter().position(|p| p.gait == g.description().gait));
@@ -85,14 +86,14 @@ fn tables(of_paper: bool) -> anyhow::Result<Vec<Table>> {
         gaits: walking,
         title: "Optimal gaits".into(),
         speed: WALKING,
-        settings: Settings::default(),
+        settings: Settings { examination, ..Settings::default() },
         published: if of_paper { &PUBLISHED } else { &[] },
     };
     let runs = Table {
         gaits: flying,
         title: "Gaits that fly,".into(),
         speed: FLYING,
-        settings: Settings { starts: Some(STARTS_FLYING), ..Settings::default() },
+        settings: Settings { starts: Some(STARTS_FLYING), examination, ..Settings::default() },
         published: &[],
     };
     Ok([walks, runs].into_iter().filter(|table| !table.gaits.is_empty()).collect())
@@ -125,7 +126,7 @@ impl Table {
                 bar.set_message(format!("{name}, {} ({} of {searches})", criterion.name(), records.len() - first + 1));
                 let task = Task { gait: *gait, criterion, speed: self.speed };
                 let mut result = task.search(&self.settings, &[], &|_| bar.inc(1));
-                result.examine(*gait);
+                result.examine(*gait, self.settings.examination);
                 output::write_json(&folder.join(format!("{name}-{}.json", criterion.name())), &result)?;
                 let record = Record::issued(result, *gait);
                 bar.suspend(|| output::quiet_when_closed(self.row(&record)))?;

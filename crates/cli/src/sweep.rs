@@ -8,6 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use piaffe_model::Gait;
 use piaffe_model::motion::Criterion;
 use piaffe_optimizer::altered::Altered;
+use piaffe_optimizer::examine::Examination;
 use piaffe_optimizer::result::GaitResult;
 use piaffe_optimizer::search::atlas::{self, VISITS};
 use piaffe_optimizer::search::crossover::{Comparison, solve};
@@ -65,7 +66,7 @@ pub fn run(
         lines[line].add(c, results);
     }
     folder.bar.set_message("examination");
-    lines.par_iter_mut().for_each(Line::examine);
+    lines.par_iter_mut().for_each(|line| line.examine(settings.examination));
     folder.bar.finish_and_clear();
     if let Some(error) = folder.failure() {
         return Err(error);
@@ -129,9 +130,9 @@ impl Line {
     }
 
     /// Adds to all results what is told beyond their verdict.
-    fn examine(&mut self) {
+    fn examine(&mut self, examination: Examination) {
         let gait = self.gait;
-        self.results.par_iter_mut().flatten().for_each(|result| result.examine(gait));
+        self.results.par_iter_mut().flatten().for_each(|result| result.examine(gait, examination));
     }
 
     fn records(&self) -> Vec<Record<'static>> {

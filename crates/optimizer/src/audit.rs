@@ -23,8 +23,8 @@ const HISTORY: [&str; 7] =
     ["local_optima", "virtual_cost", "conflicts", "nearest_speed", "search", "seconds", "version"];
 /// What is absent, which is compared with what is.
 const ABSENT: &str = "not_examined";
-/// What an optimum may leave open, if it says so: what is told beyond the verdict.
-const MAY_BE_ABSENT: [&str; 3] = ["sensitivities", "stability", "real_legs"];
+/// What an optimum may leave open, if it says so: what takes longest of its verdict, and what is told beyond it.
+const MAY_BE_ABSENT: [&str; 4] = ["certificate", "sensitivities", "stability", "real_legs"];
 
 /// Of a result that has no motion.
 const NONE_FOUND: &str = "there is no motion: that none was found is a statement about the search";

@@ -6,30 +6,76 @@ use crate::result::{GaitResult, NotExamined};
 use crate::sensitivity::sensitivities;
 use crate::stability::stability;
 use piaffe_model::Gait;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::fmt::Display;
+
+/// How closely an optimum is looked at. Its receipt and the first-order conditions are looked at in any case.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Examination {
+    /// No more than that.
+    None,
+    /// Slopes of the least criterion and stability too: less than what the search takes.
+    Quick,
+    /// The certificate and the real legs too.
+    #[default]
+    Full,
+}
+
+impl Examination {
+    pub const ALL: [Examination; 3] = [Examination::None, Examination::Quick, Examination::Full];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Examination::None => "none",
+            Examination::Quick => "quick",
+            Examination::Full => "full",
+        }
+    }
+
+    /// As its name says.
+    pub fn by_name(name: &str) -> Option<Examination> {
+        Examination::ALL.into_iter().find(|examination| examination.name() == name)
+    }
+}
 
 impl GaitResult {
     /// Adds what the gait was derived from, and what is found about the motion if it is an optimum.
     ///
     /// Each entry follows from the description and the motion alone. What cannot be derived, or has a number
     /// that is none, stays absent, and [`GaitResult::not_examined`] says so.
-    pub fn examine(&mut self, gait: &dyn Gait) {
+    pub fn examine(&mut self, gait: &dyn Gait, examination: Examination) {
         self.specification = gait.specification().cloned();
         let Some(motion) = self.motion() else { return };
         let mut open = Vec::new();
-        if self.certificate.is_none() {
+        let mut unasked = |entry: &str| {
+            open.push(NotExamined {
+                entry: entry.into(),
+                reason: format!("not asked for (--examine {})", examination.name()),
+            });
+        };
+        if examination != Examination::Full {
+            unasked("certificate");
+            unasked("real_legs");
+        }
+        if examination == Examination::None {
+            unasked("sensitivities");
+            unasked("stability");
+            self.not_examined = open;
+            return;
+        }
+        if examination == Examination::Full && self.certificate.is_none() {
             open.push(NotExamined { entry: "certificate".into(), reason: "nothing could be enclosed".into() });
         }
         let (legs, (slopes, pushed)) = rayon::join(
-            || RealLegs::new(gait, &motion),
+            || (examination == Examination::Full).then(|| RealLegs::new(gait, &motion)),
             || {
                 let slopes = || sensitivities(gait, self.criterion, self.speed, &motion);
                 rayon::join(slopes, || stability(gait, &motion))
             },
         );
         self.stability = told(pushed, "stability", &mut open);
-        self.real_legs = told(legs, "real_legs", &mut open);
+        self.real_legs = legs.and_then(|legs| told(legs, "real_legs", &mut open));
         self.sensitivities = told(slopes, "sensitivities", &mut open);
         self.not_examined = open;
     }

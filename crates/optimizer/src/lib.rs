@@ -8,7 +8,7 @@ pub mod audit;
 pub mod constraints;
 pub mod cost;
 pub mod cycle;
-mod examine;
+pub mod examine;
 pub mod finite;
 pub mod flow;
 pub mod four_legs;

@@ -80,7 +80,7 @@ impl<'a> Task<'a> {
         if result.status == Status::Infeasible && watch(Event::NearestSpeed) == Control::Continue {
             result.nearest_speed = nearest_speed(task.gait, self.criterion, self.speed, settings);
         }
-        result.examine(task.gait);
+        result.examine(task.gait, settings.examination);
         Ok(result)
     }
 
@@ -89,6 +89,6 @@ impl<'a> Task<'a> {
         let Task { gait, criterion, speed } = *self;
         let started = Instant::now();
         let found = search_watched(self, settings, from, Expected::Nothing, watch);
-        GaitResult::new(gait, criterion, speed, &found, settings.seed, || started.elapsed().as_secs_f64())
+        GaitResult::new(gait, criterion, speed, &found, settings, || started.elapsed().as_secs_f64())
     }
 }

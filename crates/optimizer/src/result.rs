@@ -1,11 +1,12 @@
 //! A result as it leaves the program: what was asked, what was found, and its receipt.
 
 use crate::cycle::{Label, theta};
+use crate::examine::Examination;
 use crate::four_legs::RealLegs;
 use crate::optimality::Optimality;
 use crate::search::evidence::Effort;
 use crate::search::local::Local;
-use crate::search::multi_start::Found;
+use crate::search::multi_start::{Found, Settings};
 use crate::sensitivity::Sensitivities;
 use crate::stability::Stability;
 use crate::verdict::{self, Verdict};
@@ -198,13 +199,14 @@ impl GaitResult {
         criterion: Criterion,
         speed: f64,
         found: &Found,
-        seed: u64,
+        settings: &Settings,
         seconds: impl Fn() -> f64,
     ) -> GaitResult {
-        let mut result = GaitResult::empty(gait, criterion, speed, SearchEntry { effort: found.effort, seed });
+        let search = SearchEntry { effort: found.effort, seed: settings.seed };
+        let mut result = GaitResult::empty(gait, criterion, speed, search);
         for optimum in &found.optima {
             let mut candidate = GaitResult::empty(gait, criterion, speed, result.search);
-            candidate.take(gait, &optimum.local);
+            candidate.take(gait, &optimum.local, settings.examination);
             // Without its receipt an optimum does not leave the program.
             if let Some(cost) = candidate.cost {
                 let durations = candidate.durations.clone();
@@ -234,7 +236,7 @@ impl GaitResult {
     ) -> Result<GaitResult, VerifyError> {
         let mut result = GaitResult::empty(gait, criterion, speed, SearchEntry::default());
         result.accept(motion, Verdict::new(gait, criterion, speed, motion)?);
-        result.examine(gait);
+        result.examine(gait, Examination::Full);
         Ok(result)
     }
 
@@ -276,17 +278,17 @@ impl GaitResult {
 
     /// Takes in a local optimum that was found elsewhere: as the result if it is the best, else among the others.
     /// Tells whether it was new; without a receipt it does not count.
-    pub fn join(&mut self, gait: &dyn Gait, local: &Local) -> bool {
-        if !local.status.is_optimal() {
+    pub fn join(&mut self, gait: &dyn Gait, local: &Local, examination: Examination) -> bool {
+        let durations = || local.motion.half_steps.iter().map(|h| h.duration).collect();
+        let claimed = LocalOptimum { cost: local.costs.of(self.criterion), durations: durations(), reached: 0 };
+        // Before its verdict, which takes longer than the search did.
+        if !local.status.is_optimal() || self.local_optima.iter().any(|known| known.same(&claimed)) {
             return false;
         }
         let mut candidate = GaitResult::empty(gait, self.criterion, self.speed, self.search);
-        candidate.take(gait, local);
+        candidate.take(gait, local, examination);
         let Some(cost) = candidate.cost else { return false };
-        let new = LocalOptimum { cost, durations: candidate.durations.clone(), reached: 0 };
-        if self.local_optima.iter().any(|known| known.same(&new)) {
-            return false;
-        }
+        let new = LocalOptimum { cost, ..claimed };
         self.local_optima.push(new);
         self.local_optima.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         if self.cost.is_none_or(|known| cost < known) {
@@ -318,8 +320,9 @@ impl GaitResult {
     }
 
     /// Makes the motion of `local` the result, with its verdict.
-    fn take(&mut self, gait: &dyn Gait, local: &Local) {
-        match Verdict::new(gait, self.criterion, self.speed, &local.motion) {
+    fn take(&mut self, gait: &dyn Gait, local: &Local, examination: Examination) {
+        let verdict = if examination == Examination::Full { Verdict::new } else { Verdict::by_receipt };
+        match verdict(gait, self.criterion, self.speed, &local.motion) {
             Ok(verdict) => self.accept(&local.motion, verdict),
             Err(error) => {
                 self.status = Status::ReceiptFailed;

@@ -40,7 +40,7 @@ impl<'s> Answers<'s> {
         let gaits: BTreeMap<&str, Interpreted> = study.gaits.iter().filter_map(of_base).collect();
         let optima = |number: usize| {
             let Point { gait, criterion, speed, .. } = study.point(number);
-            let settings = Settings { starts: None, seed: study.search.seed };
+            let settings = Settings { starts: None, seed: study.search.seed, ..Settings::default() };
             let found = gaits.get(gait).map(|gait| search(gait, criterion, speed, &settings, &|_| {}));
             let optima = found.into_iter().flat_map(|found| found.optima).take(CARRIED);
             optima.map(|optimum| optimum.local.theta).collect()
@@ -75,8 +75,9 @@ impl<'s> Answers<'s> {
         let point = self.study.point(number);
         let gait = self.study.designs.robot(&self.study.robot, point.design)?.gait(point.gait)?;
         let found = self.found(&point, &gait);
-        let mut result = GaitResult::new(&gait, point.criterion, point.speed, &found, self.study.search.seed, || 0.0);
-        result.examine(&gait);
+        let settings = self.settings(None);
+        let mut result = GaitResult::new(&gait, point.criterion, point.speed, &found, &settings, || 0.0);
+        result.examine(&gait, settings.examination);
         Ok((result, gait))
     }
 
@@ -85,13 +86,14 @@ impl<'s> Answers<'s> {
         member(&self.families, point.gait, &robot)
     }
 
+    fn settings(&self, starts: Option<usize>) -> Settings {
+        Settings { starts, seed: self.study.search.seed, ..Settings::default() }
+    }
+
     fn found(&self, point: &Point, gait: &dyn Gait) -> Found {
         let (search, known) = (self.study.search, &self.base[point.number % self.study.of_design()]);
         let task = Task { gait, criterion: point.criterion, speed: point.speed };
-        let from = |starts| {
-            let settings = Settings { starts, seed: search.seed };
-            search_from(&task, &settings, known, Expected::Nothing, &|_| {})
-        };
+        let from = |starts| search_from(&task, &self.settings(starts), known, Expected::Nothing, &|_| {});
         let found = from(Some(search.starts.unwrap_or(FEW)));
         // Few starts do not settle that there is nothing.
         if found.optima.is_empty() && search.starts.is_none() { from(None) } else { found }
@@ -118,7 +120,7 @@ impl<'s> Answers<'s> {
             return self.without(point, Status::ReceiptFailed, why);
         }
         let GaitResult { status, message, conflicts, .. } =
-            GaitResult::new(gait, point.criterion, point.speed, &found, self.study.search.seed, || 0.0);
+            GaitResult::new(gait, point.criterion, point.speed, &found, &self.settings(None), || 0.0);
         let conflict = conflicts.into_iter().map(|entry| entry.constraint).collect();
         Row { conflict, ..self.without(point, status.into(), message) }
     }

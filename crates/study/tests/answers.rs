@@ -2,6 +2,7 @@
 
 use piaffe_interpreter::Robot;
 use piaffe_model::motion::Criterion;
+use piaffe_optimizer::examine::Examination;
 use piaffe_optimizer::search::local::Task;
 use piaffe_study::{Answers, Beyond, Designs, Row, Search, Status, Study, Vary};
 use std::collections::BTreeSet;
@@ -42,7 +43,7 @@ fn a_row_is_what_the_robot_gives_alone() {
         let gait = study.designs.robot(&study.robot, row.design).unwrap().gait("trot").unwrap();
         let task = Task { gait: &gait, criterion: row.criterion, speed: row.speed };
         let mut alone = task.optimize().unwrap();
-        alone.examine(&gait);
+        alone.examine(&gait, Examination::Full);
         let near = |a: f64, b: f64| (a - b).abs() <= 1e-7 * a.abs().max(b.abs());
         assert!(near(row.cost().unwrap(), alone.cost.unwrap()), "{row:?} {:?}", alone.cost);
         assert!(optimum.durations.iter().zip(&alone.durations).all(|(a, b)| (a - b).abs() < 1e-5));

@@ -1,6 +1,7 @@
 //! What is issued is confirmed, and is what is right.
 
 use piaffe::audit::Audit;
+use piaffe::examine::Examination;
 use piaffe::model::Gait;
 use piaffe::motion::Criterion::{self, Energy, Torque};
 use piaffe::result::GaitResult;
@@ -14,8 +15,8 @@ fn gait(key: &str) -> &'static dyn Gait {
 fn optimum(key: &str, criterion: Criterion, speed: f64) -> GaitResult {
     let settings = Settings::default();
     let found = search(gait(key), criterion, speed, &settings, &|_| {});
-    let mut result = GaitResult::new(gait(key), criterion, speed, &found, settings.seed, || 0.0);
-    result.examine(gait(key));
+    let mut result = GaitResult::new(gait(key), criterion, speed, &found, &settings, || 0.0);
+    result.examine(gait(key), Examination::Full);
     result
 }
 

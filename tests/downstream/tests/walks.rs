@@ -10,7 +10,7 @@ fn a_robot_of_ones_own_walks_with_a_receipt() {
     let [gait] = GAITS else { panic!("one gait was described") };
     assert_eq!((gait.description().key, gait.description().robot), ("stroll", "toy"));
     let found = search(*gait, Criterion::Energy, 0.3, &Settings::default(), &|_| {});
-    let result = GaitResult::new(*gait, Criterion::Energy, 0.3, &found, 1, || 0.0);
+    let result = GaitResult::new(*gait, Criterion::Energy, 0.3, &found, &Settings::default(), || 0.0);
     assert!(result.is_optimal(), "{}", result.message);
     assert!(result.receipt.is_some_and(|r| r.max_violation < 1e-6));
 }

@@ -135,7 +135,7 @@ pub fn search_at(
     step(journal, &name, &(common(gait, settings), neighbours, expected), || {
         let started = Instant::now();
         let found = search_from(task, settings, neighbours, expected, &|_| {});
-        GaitResult::new(gait, criterion, speed, &found, settings.seed, || started.elapsed().as_secs_f64())
+        GaitResult::new(gait, criterion, speed, &found, settings, || started.elapsed().as_secs_f64())
     })
 }
 
@@ -189,7 +189,7 @@ fn bring(
             false => walk(&task, from, theta),
         };
         let mut result = point.clone();
-        result.join(gait, &local).then_some(result)
+        result.join(gait, &local, settings.examination).then_some(result)
     });
     let Some(changed) = changed else { return (false, fresh) };
     if fresh {

@@ -175,7 +175,7 @@ fn answered(gait: &dyn Gait, criterion: Criterion, [asked, good]: [f64; 2], sett
         let speed = legible(asked + distance, distance > 0.0);
         if speed > 0.0 && speed != asked {
             let found = search(gait, criterion, speed, settings, &|_| {});
-            if GaitResult::new(gait, criterion, speed, &found, settings.seed, || 0.0).is_optimal() {
+            if GaitResult::new(gait, criterion, speed, &found, settings, || 0.0).is_optimal() {
                 return Some(speed);
             }
         }

@@ -6,6 +6,7 @@ use super::guess::{Plan, walk};
 use super::local::{Local, Task};
 use super::watch::{Event, Watch, ended};
 use crate::cycle::{Cycle, theta};
+use crate::examine::Examination;
 use piaffe_model::Gait;
 use piaffe_model::motion::Criterion;
 use piaffe_sqp::{Iteration, Problem, Values};
@@ -30,18 +31,19 @@ const MOST: usize = 64;
 /// After the first batch, every start of this many begins near the best optimum so far.
 const HOP: usize = 4;
 
-/// How widely to search.
+/// How widely to search, and how closely to look at what is found.
 #[derive(Clone, Debug)]
 pub struct Settings {
     /// Number of starts, the first of which is the default walk; by default as many as the evidence asks for.
     pub starts: Option<usize>,
     /// Of the random starts.
     pub seed: u64,
+    pub examination: Examination,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Settings { starts: None, seed: 1 }
+        Settings { starts: None, seed: 1, examination: Examination::default() }
     }
 }
 
