@@ -4,6 +4,7 @@
 //! found there is carried to the neighbours until nothing improves, and to gaits that differ in their flights alone. To a speed without an optimum the nearest ones of all
 //! criteria are carried, from both sides and by small steps of the speed.
 
+use super::evidence::Effort;
 use super::journal::{Journal, common, step};
 use super::local::{Local, Task};
 use super::multi_start::{Expected, Settings, search_from};
@@ -45,7 +46,7 @@ pub fn sweep(
                 // Whatever it is to cost: that the other criterion has none is said of motions.
                 _ if lines[..c].iter().any(|line| no_motion(&line[k])) => Expected::NoMotion,
                 Some(before) if no_motion(before) => Expected::NoMotion,
-                Some(before) if before.is_optimal() => Expected::Theirs,
+                Some(before) if before.is_optimal() => Expected::Theirs(looked(&lines[c])),
                 _ => Expected::Nothing,
             };
             let task = Task { gait, criterion, speed };
@@ -59,6 +60,15 @@ pub fn sweep(
     }
     carry_on(gait, &mut lines, settings, journal);
     lines
+}
+
+/// Speeds before one whose searches count as evidence for it.
+const NEAR: usize = 3;
+
+/// How widely was searched at the last speeds, as far as there are optima without a gap.
+fn looked(line: &[GaitResult]) -> Effort {
+    let near = line.iter().rev().take(NEAR).take_while(|result| result.is_optimal());
+    near.fold(Effort::default(), |sum, result| sum.with(result.search.effort))
 }
 
 /// Carries optima to their neighbours until nothing improves.

@@ -3,6 +3,7 @@
 //! What is solved for are further results of both; a comparison follows from results alone.
 
 use super::atlas::search_at;
+use super::evidence::Effort;
 use super::journal::Journal;
 use super::local::Task;
 use super::multi_start::{Expected, Settings};
@@ -148,7 +149,7 @@ fn between(
     // The ends come from wide searches: their basins are what counts.
     let settings = Settings { starts: Some(1), ..settings.clone() };
     let task = Task { gait, criterion: ends[0].criterion, speed };
-    let (result, _) = search_at(&task, &settings, &from, Expected::Theirs, journal);
+    let (result, _) = search_at(&task, &settings, &from, Expected::Theirs(Effort::default()), journal);
     result.is_optimal().then_some(result)
 }
 

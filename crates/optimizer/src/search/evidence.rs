@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 const LEAST: usize = 12;
 
 /// How widely a search has looked, and what for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Effort {
     /// Starts that know of no optimum: the default walk and random ones.
     pub starts: usize,
@@ -31,6 +31,16 @@ impl Effort {
     pub fn expected_optima(&self) -> Option<f64> {
         let Effort { successes: n, optima: w, .. } = *self;
         (n > w + 2).then(|| (w * (n - 1)) as f64 / (n - w - 2) as f64)
+    }
+
+    /// Together with a search whose optima are these, as far as is known.
+    pub fn with(self, other: Effort) -> Effort {
+        Effort {
+            starts: self.starts + other.starts,
+            successes: self.successes + other.successes,
+            informed: self.informed + other.informed,
+            optima: self.optima.max(other.optima),
+        }
     }
 
     /// Whether further starts hardly pay: less than half an optimum is yet to be seen, or no start led to any.

@@ -18,9 +18,11 @@ const SAME_COST: f64 = 1e-5;
 /// Starts that run side by side; what they found decides whether more do.
 const BATCH: usize = 8;
 
-/// As many at first where they only confirm what neighbours let expect, and how many of them must end in the same optimum.
+/// As many at first where they only confirm an optimum that neighbours let expect, and how many of them must end in one.
 const CONFIRMING: usize = 4;
 const AGREEING: usize = 2;
+/// As many where neighbours let expect that there is no motion.
+const IN_VAIN: usize = 2;
 
 /// Walks drawn for each random start of the first batch.
 const DRAWS: usize = 3;
@@ -51,8 +53,8 @@ impl Default for Settings {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expected {
     Nothing,
-    /// The optimum to which theirs lead, and no other.
-    Theirs,
+    /// The optimum to which theirs lead, which so wide searches have found.
+    Theirs(Effort),
     /// No motion, as with one of them.
     NoMotion,
 }
@@ -128,8 +130,12 @@ pub fn search_watched(
             break;
         }
         let best = so_far.optima.first().filter(|_| first > 0);
-        let confirming = first == 0 && settings.starts.is_none() && expected != Expected::Nothing;
-        let next = most.min(first + if confirming { CONFIRMING } else { BATCH });
+        let batch = match expected {
+            Expected::Theirs(_) if first == 0 && settings.starts.is_none() => CONFIRMING,
+            Expected::NoMotion if first == 0 && settings.starts.is_none() => IN_VAIN,
+            _ => BATCH,
+        };
+        let next = most.min(first + batch);
         let batch = (first..next).into_par_iter().map(|k| {
             let end = begin(task, settings.seed, k, best, watch);
             watch(Event::Ended(k));
@@ -158,15 +164,19 @@ pub fn search_watched(
 
 /// Whether a few starts of its own have confirmed what was expected of a search; `carried` are the ends of what neighbours gave.
 fn is_confirmed(expected: Expected, so_far: &Found, carried: &[End], same: impl Fn(&Local, &Local) -> bool) -> bool {
-    let asked = so_far.effort.starts >= CONFIRMING;
+    let Effort { starts, successes, .. } = so_far.effort;
     match expected {
         Expected::Nothing => false,
-        Expected::NoMotion => asked && so_far.optima.is_empty(),
-        Expected::Theirs => {
-            let theirs =
-                |best: &Local| carried.iter().any(|end| end.local.status.is_optimal() && same(&end.local, best));
-            // Where there are several optima, a few starts do not tell which is the best.
-            asked && so_far.effort.successes >= AGREEING && matches!(&so_far.optima[..], [only] if theirs(&only.local))
+        Expected::NoMotion => starts >= IN_VAIN && so_far.optima.is_empty(),
+        Expected::Theirs(looked) => {
+            let theirs = |best: &Optimum| {
+                carried.iter().any(|end| end.local.status.is_optimal() && same(&end.local, &best.local))
+            };
+            // Where there are several optima, a few starts do not tell which is the best; with those of the neighbours they may, if
+            // these have as many.
+            let optima = so_far.optima.len();
+            let settled = optima == 1 || (optima <= looked.optima && so_far.effort.with(looked).is_enough());
+            starts >= CONFIRMING && successes >= AGREEING && so_far.optima.first().is_some_and(theirs) && settled
         }
     }
 }
