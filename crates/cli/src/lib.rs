@@ -35,6 +35,7 @@ use clap::builder::{PossibleValuesParser, ValueParser};
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
 use piaffe_codegen::Changes;
+use piaffe_interpreter::Store;
 use piaffe_model::motion::Criterion;
 use piaffe_optimizer::search::local::Task;
 use piaffe_optimizer::search::multi_start::Settings;
@@ -68,7 +69,8 @@ const NOT_CONFIRMED: u8 = 4;
                   piaffe sweep --speeds 0.2..1.2:0.1 --out sweep     many speeds\n\n\
                   Exit codes: 0 success, 1 something failed, 2 wrong usage, 3 no optimum (infeasible or not converged),\n\
                   4 a result was not confirmed.\n\
-                  NO_COLOR=1 turns colours off. Files are written whole or not at all, also when the program is interrupted."
+                  NO_COLOR=1 turns colours off. Files are written whole or not at all, also when the program is interrupted.\n\
+                  What is derived without a compiler is kept in ~/.cache/piaffe: PIAFFE_CACHE=DIR keeps it elsewhere, PIAFFE_CACHE=off nowhere."
 )]
 struct Arguments {
     #[command(subcommand)]
@@ -367,6 +369,7 @@ pub fn run(build: Build) -> ExitCode {
 /// run that later ones find.
 pub fn run_with(build: Build, typed: &[OsString]) -> u8 {
     built::set(build);
+    Store::of_user().choose();
     let arguments = match read(typed) {
         Ok(arguments) => arguments,
         Err(code) => return code,

@@ -1,13 +1,12 @@
 //! A gait that is evaluated as it was derived.
 
+use super::derived::Derived;
 use super::description::description;
 use super::kept::{kept, text};
 use super::tape::Unrunnable;
-use super::twins::{Twins, Which, tapes};
+use super::twins::{Twins, Which};
 use super::whole::Whole;
-use piaffe_codegen::dynamics::{kernels, lowest};
 use piaffe_codegen::mechanism::{Mechanism, levers};
-use piaffe_codegen::program::programs;
 use piaffe_codegen::spec;
 use piaffe_codegen::typeset::latex;
 use piaffe_model::{Description, Gait, Lever, Mode, Specification, whole};
@@ -40,12 +39,9 @@ impl Interpreted {
         key: &str,
     ) -> Result<Interpreted, Unrunnable> {
         let mechanism = mechanism(robot, gait)?;
-        let (mut model, derived) = kernels(&mechanism);
-        let lowest = lowest(&mut model);
-        let programs = programs(&model.ring, &derived);
-        let description = description(&mechanism, key, &lowest, &derived, &programs);
-        let kernels = Kernels::new(tapes(&derived, programs.iter().map(|(program, _)| program))?);
-        Ok(Interpreted::of(robot, gait, specification, description, kernels))
+        let derived = Derived::of(&mechanism)?;
+        let description = description(&mechanism, key, &derived);
+        Ok(Interpreted::of(robot, gait, specification, description, Kernels::new(derived.tapes)))
     }
 
     /// The gait with this description and these kernels.

@@ -3,10 +3,11 @@
 use piaffe_codegen::dynamics::{Block, Kernel};
 use piaffe_codegen::mechanism::Mode;
 use piaffe_model::shape;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Blocks by the names under which the runtime's shapes ask for them: `curvature.gradient`, `curvature.n.torque`.
-#[derive(Default)]
+#[derive(Default, Serialize, Deserialize)]
 pub struct Shapes(BTreeMap<String, shape::Block>);
 
 impl Shapes {

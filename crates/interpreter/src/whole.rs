@@ -1,13 +1,11 @@
 //! The whole robot that the virtual legs stand for.
 
+use super::derived::DerivedWhole;
 use super::description::body;
 use super::kept::{kept, text};
-use super::shapes::Shapes;
 use super::tape::Unrunnable;
-use super::twins::{Twins, tapes};
-use piaffe_codegen::dynamics::whole_kernels;
+use super::twins::Twins;
 use piaffe_codegen::mechanism;
-use piaffe_codegen::program::Program;
 use piaffe_codegen::spec::Robot;
 use piaffe_model::whole::{self, Description, Joint, Leg};
 
@@ -22,11 +20,7 @@ impl Whole {
     /// Of a robot whose locked joints are gone.
     pub fn new(robot: &Robot) -> Result<Whole, Unrunnable> {
         let whole = mechanism::Whole::new(robot);
-        let (ring, kernels) = whole_kernels(&whole);
-        let shapes = Shapes::new(&kernels);
-        // On one thread: whoever asks first may be one of many, all of whom wait for this.
-        let programs: Vec<Program> = kernels.iter().map(|kernel| Program::new(&ring, kernel)).collect();
-        let mut tapes = tapes(&kernels, &programs)?;
+        let DerivedWhole { shapes, mut tapes } = DerivedWhole::of(&whole)?;
         let mut tape = |name| tapes.remove(name).unwrap_or_default();
         let joint = |j: &mechanism::WholeJoint| Joint { name: text(&j.name), rotor_inertia: j.rotor_inertia };
         let leg = |l: &mechanism::WholeLeg| Leg {
