@@ -39,7 +39,7 @@ use piaffe_interpreter::Store;
 use piaffe_model::motion::Criterion;
 use piaffe_optimizer::search::local::Task;
 use piaffe_optimizer::search::multi_start::Settings;
-use robots::by_name;
+use robots::{Wanted, by_name};
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -231,8 +231,8 @@ enum Command {
         after_help = "Example:\n  piaffe sweep --gait trot --gait amble --criterion all --speeds 0.1..1.6:0.1 --out sweep"
     )]
     Sweep {
-        /// May be given several times; if it is not given, the gaits of the first robot that never leave the ground. `all` are those
-        /// that fly too, whose searches take ten times as long.
+        /// May be given several times; if it is not given, the gaits of the first robot that never leave the ground (where all fly, all).
+        /// `all` are those that fly too, whose searches take ten times as long.
         #[arg(long, value_parser = gait_names_or_all())]
         gait: Vec<String>,
         /// energy, torque or all; may be given several times.
@@ -401,11 +401,8 @@ fn gait_names() -> ValueParser {
     robots::keys().map_or_else(ValueParser::string, |keys| PossibleValuesParser::new(keys).into())
 }
 
-/// Instead of the names of gaits: all of them.
-const ALL: &str = "all";
-
 fn gait_names_or_all() -> ValueParser {
-    let names = |keys: Vec<&'static str>| PossibleValuesParser::new([ALL].into_iter().chain(keys)).into();
+    let names = |keys: Vec<&'static str>| PossibleValuesParser::new([robots::ALL].into_iter().chain(keys)).into();
     robots::keys().map_or_else(ValueParser::string, names)
 }
 
@@ -429,12 +426,7 @@ fn answer(arguments: Arguments) -> anyhow::Result<bool> {
         Some(Command::Verify { results, json }) => verify::run(&results, json.as_deref()),
         Some(Command::Report { results, detail, out }) => report::run(&results, detail, &out),
         Some(Command::Sweep { gait, criterion, speeds, real_legs, folder, starts, seed }) => {
-            let named = || gait.iter().map(|gait| by_name(gait)).collect::<anyhow::Result<_>>();
-            let gaits: Vec<_> = match &gait[..] {
-                [] => robots::first()?.into_iter().filter(|gait| !gait.description().flies()).collect(),
-                names if names.iter().any(|name| name == ALL) => robots::first()?,
-                _ => named()?,
-            };
+            let gaits = robots::wanted(&Wanted::by(&gait))?;
             sweep::run(&gaits, real_legs, &criteria(&criterion), &speeds, &folder, &settings(starts, seed))
         }
         Some(Command::Diff { a, b, json }) => diff::run(&a, &b, json.as_deref()),

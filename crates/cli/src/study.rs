@@ -2,7 +2,8 @@
 
 use super::digits::decimal;
 use super::journal::Folder;
-use super::{criteria, gait_names, input, output, report, robots, sweep, whole};
+use super::robots::Wanted;
+use super::{criteria, gait_names_or_all, input, output, report, robots, sweep, whole};
 use anyhow::{Context, bail};
 use clap::builder::PossibleValuesParser;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -16,8 +17,9 @@ use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// All gaits of the first robot if none is given.
-    #[arg(value_parser = gait_names(), value_name = "GAIT")]
+    /// If none is given, the gaits of the first robot that never leave the ground (where all fly, all). `all` are those that fly too, whose
+    /// searches take ten times as long.
+    #[arg(value_parser = gait_names_or_all(), value_name = "GAIT")]
     pub gaits: Vec<String>,
     /// Mean forward speeds: a list, or FROM..TO:STEP, m/s.
     #[arg(long, value_parser = sweep::parse_speeds)]
@@ -25,6 +27,10 @@ pub struct Arguments {
     /// energy, torque or all; may be given several times.
     #[arg(long, value_parser = PossibleValuesParser::new(["energy", "torque", "all"]), default_value = "all")]
     criterion: Vec<String>,
+    /// Impose contact, torque and speed limits at each real leg, not only at the virtual ones. `cost` is then the real joints', and
+    /// `virtual_cost` that without these limits.
+    #[arg(long)]
+    real_legs: bool,
     /// A number of the specification and its values: NAME=FROM..TO:STEP or NAME=A,B,C; may be given several times, for every
     /// combination. Several numbers at once with braces: 'links.{left,right}_shin.mass=1.0..2.0:0.1'.
     #[arg(long, value_name = "NAME=VALUES")]
@@ -94,8 +100,8 @@ pub fn run(arguments: Arguments) -> anyhow::Result<bool> {
 
 /// The study that is asked for, if nothing is wrong with it.
 fn asked(arguments: Arguments) -> anyhow::Result<Study> {
-    let Arguments { gaits, speed, criterion, vary, sample, designs, also, starts, seed, .. } = arguments;
-    let (robot, gaits) = robots::robot_of(&gaits)?;
+    let Arguments { gaits, speed, criterion, real_legs, vary, sample, designs, also, starts, seed, .. } = arguments;
+    let (robot, gaits) = robots::robot_of(&Wanted::by(&gaits))?;
     let wanted = |beyond: &Beyond| also.iter().any(|name| name == beyond.name());
     let made = match (&designs, sample) {
         (Some(file), _) => {
@@ -115,6 +121,7 @@ fn asked(arguments: Arguments) -> anyhow::Result<Study> {
         gaits,
         criteria: criteria(&criterion),
         speeds: speed,
+        real_legs,
         search: Search { starts: starts.map(|n| n as usize), seed },
         beyond: Beyond::ALL.into_iter().filter(wanted).collect(),
     };
@@ -164,6 +171,7 @@ fn page(study: &Study, answers: &Answers, rows: &[Row], path: &Path) -> anyhow::
         criterion: row.criterion,
         speed: row.speed,
         costs: row.optimum.as_ref().map(|optimum| optimum.costs),
+        status: status(row),
     };
     let numbers = study.designs.names().to_vec();
     let space = Space { robot: study.robot.name().into(), numbers, spots: rows.iter().map(spot).collect() };
@@ -186,6 +194,15 @@ fn page(study: &Study, answers: &Answers, rows: &[Row], path: &Path) -> anyhow::
     let report = Report::new(records, Extremes::default(), None)?.of_space(space);
     output::say!("To be seen in {}", report::write_report(&report, path)?.display());
     Ok(())
+}
+
+/// What became of a point, in a few words.
+fn status(row: &Row) -> String {
+    let certificate = row.optimum.as_ref().and_then(|optimum| optimum.certificate);
+    match certificate {
+        Some(certificate) => format!("{}, {}", row.status.name(), certificate.name()),
+        None => row.status.name().into(),
+    }
 }
 
 /// What is best of each gait and criterion at each speed.

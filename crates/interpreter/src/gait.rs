@@ -2,7 +2,7 @@
 
 use super::derived::Derived;
 use super::description::description;
-use super::kept::{kept, text};
+use super::kept::text;
 use super::tape::Unrunnable;
 use super::twins::{Twins, Which};
 use super::whole::Whole;
@@ -15,16 +15,17 @@ use std::sync::OnceLock;
 /// A gait of a specification, derived when it was loaded: what a build would make of it, with the same bits.
 ///
 /// What only some ask for (the whole robot, the closed forms, what the numbers of the specification are to the gait's) is derived
-/// when it is asked for. What the traits give out for ever stays for as long as the program: a few kilobytes for each gait.
+/// when it is asked for. What its description gives out for ever stays for as long as the program: a few kilobytes for each gait, and
+/// nothing for each member of a family.
 pub struct Interpreted {
     robot: spec::Robot,
     gait: spec::Gait,
     specification: Specification,
     description: Description,
     kernels: Kernels,
-    whole: OnceLock<Option<&'static Whole>>,
-    latex: OnceLock<&'static str>,
-    levers: OnceLock<&'static [Lever]>,
+    whole: OnceLock<Option<Whole>>,
+    latex: OnceLock<String>,
+    levers: OnceLock<Vec<Lever>>,
 }
 
 impl Interpreted {
@@ -103,23 +104,20 @@ macro_rules! gait {
                 Some(&self.specification)
             }
 
-            fn levers(&self) -> &'static [Lever] {
-                self.levers.get_or_init(|| kept(levers(&self.robot, &self.gait).into_iter().map(lever).collect()))
+            fn levers(&self) -> &[Lever] {
+                self.levers.get_or_init(|| levers(&self.robot, &self.gait).into_iter().map(lever).collect())
             }
 
-            fn latex(&self) -> &'static str {
-                self.latex.get_or_init(|| match mechanism(&self.robot, &self.gait) {
-                    Ok(mechanism) => text(&latex(&self.robot, &self.gait, &mechanism)),
-                    Err(_) => "",
+            fn latex(&self) -> &str {
+                self.latex.get_or_init(|| {
+                    let mechanism = mechanism(&self.robot, &self.gait);
+                    mechanism.map_or(String::new(), |mechanism| latex(&self.robot, &self.gait, &mechanism))
                 })
             }
 
-            fn whole(&self) -> Option<&'static dyn whole::Whole> {
-                let whole = self.whole.get_or_init(|| {
-                    let whole = Whole::new(&locked(&self.robot, &self.gait).ok()?).ok()?;
-                    Some(&kept(vec![whole])[0])
-                });
-                whole.map(|whole| whole as &dyn whole::Whole)
+            fn whole(&self) -> Option<&dyn whole::Whole> {
+                let whole = self.whole.get_or_init(|| Whole::new(&locked(&self.robot, &self.gait).ok()?).ok());
+                whole.as_ref().map(|whole| whole as &dyn whole::Whole)
             }
 
             $(fn $name(&self, $($of: $ty,)? $($input: gait!(type $kind),)* out: &mut [f64]) {
@@ -174,9 +172,9 @@ gait! {
 fn lever(lever: piaffe_codegen::mechanism::Lever) -> Lever {
     Lever {
         name: text(&lever.name),
-        numbers: kept(lever.numbers.iter().map(|name| text(name)).collect()),
+        numbers: lever.numbers.iter().map(|name| text(name)).collect(),
         unit: lever.unit,
         value: lever.value + 0.0,
-        slopes: kept(lever.slopes),
+        slopes: lever.slopes.into(),
     }
 }

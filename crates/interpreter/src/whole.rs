@@ -2,7 +2,7 @@
 
 use super::derived::DerivedWhole;
 use super::description::body;
-use super::kept::{kept, text};
+use super::kept::text;
 use super::tape::Unrunnable;
 use super::twins::Twins;
 use piaffe_codegen::mechanism;
@@ -10,7 +10,7 @@ use piaffe_codegen::spec::Robot;
 use piaffe_model::whole::{self, Description, Joint, Leg};
 
 pub struct Whole {
-    description: &'static Description,
+    description: Description,
     inertia_and_bias: Twins,
     feet: Twins,
     feet_bias: Twins,
@@ -30,14 +30,14 @@ impl Whole {
             foot: l.foot.map(|x| x + 0.0),
         };
         Ok(Whole {
-            description: &kept(vec![Description {
+            description: Description {
                 robot: text(&whole.robot),
                 gravity: whole.gravity,
-                bodies: kept(whole.bodies.iter().map(body).collect()),
-                joints: kept(whole.joints.iter().map(joint).collect()),
-                legs: kept(whole.legs.iter().map(leg).collect()),
-                shapes: &kept(vec![whole::Shapes::named("", &|name| shapes.block(name))])[0],
-            }])[0],
+                bodies: whole.bodies.iter().map(body).collect(),
+                joints: whole.joints.iter().map(joint).collect(),
+                legs: whole.legs.iter().map(leg).collect(),
+                shapes: whole::Shapes::named("", &|name| shapes.block(name)),
+            },
             inertia_and_bias: tape("inertia_and_bias"),
             feet: tape("feet"),
             feet_bias: tape("feet_bias"),
@@ -46,8 +46,8 @@ impl Whole {
 }
 
 impl whole::Whole for Whole {
-    fn description(&self) -> &'static Description {
-        self.description
+    fn description(&self) -> &Description {
+        &self.description
     }
 
     fn inertia_and_bias(&self, up: &[f64], omega: &[f64], q: &[f64], qd: &[f64], out: &mut [f64]) {

@@ -21,7 +21,7 @@ pub use answers::Answers;
 pub use column::{Cell, Column, Kind};
 pub use designs::Designs;
 pub use question::{File, Files, Question, Unreadable};
-pub use row::{Beyond, Optimum, Pushed, Row, Slopes, Status};
+pub use row::{Beyond, Optimum, Outcome, Pushed, Row, Slopes};
 pub use shard::Shard;
 pub use study::{FEW, Point, Search, Study};
 pub use vary::{Over, Vary, multiples, steps};
