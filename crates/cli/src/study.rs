@@ -38,7 +38,7 @@ pub struct Arguments {
     /// So many robots spread evenly over the intervals of --vary, NAME=FROM..TO, instead of every combination.
     #[arg(long, value_name = "N", requires = "vary", value_parser = clap::value_parser!(u32).range(1..))]
     sample: Option<u32>,
-    /// A CSV table of robots: a column for each number under its name, a line for each robot.
+    /// A table of robots, CSV or Parquet: a column for each number under its name, a line for each robot.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["vary", "sample"])]
     designs: Option<PathBuf>,
     /// What to tell of each optimum beyond its receipt; each takes about as long as finding it.
@@ -105,7 +105,7 @@ fn asked(arguments: Arguments) -> anyhow::Result<Study> {
     let wanted = |beyond: &Beyond| also.iter().any(|name| name == beyond.name());
     let made = match (&designs, sample) {
         (Some(file), _) => {
-            table::designs(&input::read_text(file)?).map_err(|why| format!("{}: {why}", input::name(file)))
+            table::designs(input::read(file)?).map_err(|why| format!("{}: {why}", input::name(file)))
         }
         (None, Some(count)) => Designs::sample(&vary, count as usize),
         (None, None) if vary.is_empty() => Ok(Designs::base()),
@@ -152,7 +152,7 @@ pub fn write(study: &Study, shard: Shard, answers: &Answers, rows: &[Row], path:
     let columns = Column::all(study);
     whole::write(&path.join("study.csv"), &table::csv(&columns, rows).context("cannot write the table")?)?;
     #[cfg(feature = "parquet")]
-    whole::write(&path.join("study.parquet"), &table::parquet(&columns, rows).context("cannot write the table")?)?;
+    whole::write(&path.join("study.parquet"), &piaffe_study::parquet(&columns, rows).context("cannot write the table")?)?;
     output::quiet_when_closed(tell(study, rows))?;
     output::say!("rows in {}", path.join("study.csv").display());
     if shard == Shard::WHOLE {
