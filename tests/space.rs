@@ -122,6 +122,7 @@ fn every_robot_is_told_under_the_pointer_and_by_keys() {
     }
     let told_energy: f64 = told.split("energy ").last().unwrap().split(' ').next().unwrap().parse().unwrap();
     assert!((told_energy / first.number("energy") - 1.0).abs() < 1e-4, "{told}");
+    keep(&mut b, "study-told.png");
     for figure in ["front-trot-0.6", "parallel-trot-energy"] {
         assert_eq!(count(&mut b, figure, ".hot"), 1, "{figure}: it does not stand out");
     }

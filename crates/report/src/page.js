@@ -327,7 +327,10 @@ class Space {
       ? `${drawn} robots with an optimum${of}`
       : `${count(open)} of ${drawn} robots selected, ${open.length} of ${this.spots.length} optima`;
     this.clear.hidden = brushes.length === 0;
-    for (const figure of this.figures) figure.at = -1;
+    for (const figure of this.figures) {
+      figure.at = -1;
+      figure.svg.classList.toggle("chosen", brushes.length > 0);
+    }
   }
 }
 
