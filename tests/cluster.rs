@@ -40,7 +40,9 @@ fn with_few_parts(script: &str) -> String {
     let parts: usize = script.split("--array=1-").nth(1).unwrap().lines().next().unwrap().parse().unwrap();
     let shard = format!("--shard $SLURM_ARRAY_TASK_ID/{parts} ");
     assert!(script.contains(&shard), "the array has {parts} tasks, and the study another number of parts");
-    script.replace(&format!("1-{parts}\n"), &format!("1-{PARTS}\n")).replace(&shard, &shard.replace(&parts.to_string(), &PARTS.to_string()))
+    script
+        .replace(&format!("1-{parts}\n"), &format!("1-{PARTS}\n"))
+        .replace(&shard, &shard.replace(&parts.to_string(), &PARTS.to_string()))
 }
 
 fn run(folder: &Path, command: &str) {
@@ -66,6 +68,9 @@ fn a_job_array_gives_the_table_of_a_single_machine() {
     assert!(at("killed").exists(), "no task was killed");
     run(folder.path(), "piaffe study trot --speed 0.6 --designs designs.csv --out whole");
     for name in ["study.csv", "study.html", "study.json"] {
-        assert!(std::fs::read(at("study").join(name)).unwrap() == std::fs::read(at("whole").join(name)).unwrap(), "{name}");
+        assert!(
+            std::fs::read(at("study").join(name)).unwrap() == std::fs::read(at("whole").join(name)).unwrap(),
+            "{name}"
+        );
     }
 }

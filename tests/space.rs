@@ -172,13 +172,14 @@ fn a_range_of_an_axis_selects_in_all_figures() {
 
     // Robots whose least energy is small, wherever they are.
     let [least, most] = drag(&mut b, "parallel-trot-energy", "cost trot energy", 0.5, 1.0);
-    let cheap = designs(light.iter().copied().filter(|row| {
-        row.criterion == "energy" && (least..=most).contains(&row.number("energy"))
-    }));
+    let cheap = designs(
+        light.iter().copied().filter(|row| row.criterion == "energy" && (least..=most).contains(&row.number("energy"))),
+    );
     assert!(!cheap.is_empty() && cheap.len() < selected, "{least} to {most}");
     assert!(words(&mut b, SELECTED).starts_with(&format!("{} of {all} robots selected", cheap.len())));
     let of_torque = light.iter().filter(|row| row.criterion == "torque" && cheap.contains(&row.design)).count();
     assert_eq!(count(&mut b, "parallel-trot-torque", "[data-k]:not(.faded)"), of_torque);
+    b.eval("document.querySelector('.selection').scrollIntoView({ behavior: 'instant' })");
     keep(&mut b, "study-selected.png");
 
     // A click lets go of an axis, the button of all.
@@ -196,7 +197,6 @@ fn a_range_of_an_axis_selects_in_all_figures() {
 fn keep(browser: &mut Browser, name: &str) {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("space");
     std::fs::create_dir_all(&folder).unwrap();
-    browser.eval("document.querySelector('.selection').scrollIntoView({ behavior: 'instant' })");
     let image = base64::engine::general_purpose::STANDARD.decode(browser.screenshot()).unwrap();
     assert!(image.len() > 20_000, "{name} shows next to nothing");
     std::fs::write(folder.join(name), image).unwrap();

@@ -104,9 +104,7 @@ fn asked(arguments: Arguments) -> anyhow::Result<Study> {
     let (robot, gaits) = robots::robot_of(&Wanted::by(&gaits))?;
     let wanted = |beyond: &Beyond| also.iter().any(|name| name == beyond.name());
     let made = match (&designs, sample) {
-        (Some(file), _) => {
-            table::designs(input::read(file)?).map_err(|why| format!("{}: {why}", input::name(file)))
-        }
+        (Some(file), _) => table::designs(input::read(file)?).map_err(|why| format!("{}: {why}", input::name(file))),
         (None, Some(count)) => Designs::sample(&vary, count as usize),
         (None, None) if vary.is_empty() => Ok(Designs::base()),
         (None, None) => Designs::grid(&vary),
@@ -152,7 +150,10 @@ pub fn write(study: &Study, shard: Shard, answers: &Answers, rows: &[Row], path:
     let columns = Column::all(study);
     whole::write(&path.join("study.csv"), &table::csv(&columns, rows).context("cannot write the table")?)?;
     #[cfg(feature = "parquet")]
-    whole::write(&path.join("study.parquet"), &piaffe_study::parquet(&columns, rows).context("cannot write the table")?)?;
+    whole::write(
+        &path.join("study.parquet"),
+        &piaffe_study::parquet(&columns, rows).context("cannot write the table")?,
+    )?;
     output::quiet_when_closed(tell(study, rows))?;
     output::say!("rows in {}", path.join("study.csv").display());
     if shard == Shard::WHOLE {

@@ -354,8 +354,8 @@ fn front<'a>(group: &[&'a Spot], of: impl Fn(&Spot) -> Option<Xy>) -> Vec<(&'a S
 mod tests {
     use super::{Space, Spot, both, front};
     use piaffe_model::motion::{Costs, Criterion};
-use serde_json::{Value, json};
-use std::collections::{BTreeMap, BTreeSet};
+    use serde_json::{Value, json};
+    use std::collections::{BTreeMap, BTreeSet};
 
     fn spot(point: usize, [torque, energy]: [f64; 2]) -> Spot {
         let costs = (torque > 0.0).then_some(Costs { energy, torque });

@@ -149,7 +149,9 @@ impl Column {
             Point | Design | Starts | Successes | Optima => Kind::Integer,
             Gait | Criterion | Status | Reason | Conflict | LeastLimit | Active | Certificate => Kind::Text,
             Number(..) | Speed | Cost | Energy | Torque | VirtualCost | Duration(_) | StepLength | Violation
-            | CycleError | KktResidual | LeastMargin | SlopeInSpeed | Slope(..) | PushByClock | PushByPhase => Kind::Number,
+            | CycleError | KktResidual | LeastMargin | SlopeInSpeed | Slope(..) | PushByClock | PushByPhase => {
+                Kind::Number
+            }
         }
     }
 

@@ -119,7 +119,12 @@ fn limits_at_each_real_leg_are_those_of_a_robot_that_is_asked_for_alone() {
             let alone = task.answer(true, &Settings::default(), &|_| Control::Continue).unwrap();
             let near = |a: f64, b: Option<f64>| (a - b.unwrap()).abs() <= 1e-6 * a;
             let (cost, without) = (row.cost().unwrap(), row.optimum.as_ref().unwrap().virtual_cost.unwrap());
-            assert!(near(cost, alone.cost) && near(without, alone.virtual_cost), "{row:?} {:?} {:?}", alone.cost, alone.virtual_cost);
+            assert!(
+                near(cost, alone.cost) && near(without, alone.virtual_cost),
+                "{row:?} {:?} {:?}",
+                alone.cost,
+                alone.virtual_cost
+            );
             assert_eq!(cost > 1.01 * without, gait == "amble", "what they cost: {cost}, {without}");
         }
     }
