@@ -103,7 +103,7 @@ def test_what_cannot_be_read_is_told(failing: Callable[..., str], tmp_path: Path
     file = tmp_path / "designs.parquet"
     asked = ["study", "trot", "--speed", "0.5", "--designs", str(file), "--out", str(tmp_path / "study")]
     parquet.write_table(table, file)
-    assert "row 1: `null` is no number for links.thigh.mass" in failing(*asked)
+    assert "row 1: there is no number for links.thigh.mass" in failing(*asked)
     parquet.write_table(table.slice(0, 1), file)
     assert "gravity" in failing(*asked)
     parquet.write_table(table, file, compression="zstd")

@@ -33,7 +33,7 @@ use asked::Asked;
 pub use built::Build;
 use clap::builder::{PossibleValuesParser, ValueParser};
 use clap::error::ErrorKind;
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use piaffe_codegen::Changes;
 use piaffe_interpreter::Store;
 use piaffe_model::motion::Criterion;
@@ -330,9 +330,24 @@ impl Arguments {
     }
 }
 
-/// The command line itself, for whoever describes it.
+/// The command line itself.
 fn command() -> clap::Command {
-    Arguments::command()
+    with_negative_numbers(Arguments::command())
+}
+
+/// A number with a sign is a value, which can be wrong as a value, and no option that nobody knows.
+fn with_negative_numbers(command: clap::Command) -> clap::Command {
+    let of_arg = |arg: clap::Arg| match arg.get_action().takes_values() {
+        true => arg.allow_negative_numbers(true),
+        false => arg,
+    };
+    command.mut_args(of_arg).mut_subcommands(with_negative_numbers)
+}
+
+fn parse(typed: &[OsString]) -> Result<Arguments, clap::Error> {
+    let mut command = command();
+    let arguments = command.try_get_matches_from_mut(typed).and_then(|found| Arguments::from_arg_matches(&found));
+    arguments.map_err(|error| error.format(&mut command))
 }
 
 /// What was typed. The names that a gait can have depend on the robot that is asked for: that is read first.
@@ -341,7 +356,7 @@ fn read(typed: &[OsString]) -> Result<Arguments, u8> {
         let _ = error.print();
         error.exit_code() as u8
     };
-    let chosen = match Arguments::try_parse_from(typed) {
+    let chosen = match parse(typed) {
         Ok(first) if first.is_of_no_robot() => {
             if first.robot.is_some() || !first.asked.changes().is_empty() {
                 let why = "--robot, --set and limits are for commands about a robot's gaits and results";
@@ -357,7 +372,7 @@ fn read(typed: &[OsString]) -> Result<Arguments, u8> {
         output::error(&error);
         return Err(FAILED);
     }
-    Arguments::try_parse_from(typed).map_err(usage)
+    parse(typed).map_err(usage)
 }
 
 /// Runs the program for the robots of `build`.

@@ -173,12 +173,24 @@ pub fn first() -> anyhow::Result<Vec<Loaded>> {
 pub fn wanted(wanted: &Wanted) -> anyhow::Result<Vec<Loaded>> {
     match wanted {
         Wanted::Usual => {
-            let all = first()?;
-            let walks: Vec<Loaded> = all.iter().copied().filter(|gait| !gait.description().flies()).collect();
-            Ok(if walks.is_empty() { all } else { walks })
+            let (walks, flights): (Vec<Loaded>, Vec<Loaded>) =
+                first()?.into_iter().partition(|gait| !gait.description().flies());
+            if walks.is_empty() {
+                return Ok(flights);
+            }
+            note_left_out(flights.into_iter().map(|gait| gait.description().key.to_string()));
+            Ok(walks)
         }
         Wanted::All => first(),
         Wanted::Named(names) => names.iter().map(|name| by_name(name)).collect(),
+    }
+}
+
+/// Says which gaits were not meant, and how they are.
+fn note_left_out(gaits: impl Iterator<Item = String>) {
+    let names: Vec<String> = gaits.collect();
+    if !names.is_empty() {
+        output::note(&format!("left out, since they leave the ground: {}; name them, or `{ALL}`", names.join(", ")));
     }
 }
 
@@ -233,7 +245,11 @@ pub fn robot_of(wanted: &Wanted) -> anyhow::Result<(Robot, Vec<String>)> {
         }
     };
     let names = match wanted {
-        Wanted::Usual => robot.usual_gaits(),
+        Wanted::Usual => {
+            let usual = robot.usual_gaits();
+            note_left_out(robot.gaits().into_iter().filter(|gait| !usual.contains(gait)));
+            usual
+        }
         Wanted::All => robot.gaits(),
         Wanted::Named(names) => names.clone(),
     };

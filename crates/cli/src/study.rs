@@ -10,7 +10,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use piaffe_optimizer::search::journal::Journal;
 use piaffe_report::space::{Space, Spot};
 use piaffe_report::{Extremes, Record, Report};
-use piaffe_study::{Answers, Beyond, Column, Designs, Over, Question, Row, Search, Shard, Study, Vary, table};
+use piaffe_study::{Answers, Beyond, Column, Designs, Question, Row, Search, Shard, Study, Vary, table};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -103,15 +103,19 @@ fn asked(arguments: Arguments) -> anyhow::Result<Study> {
     let Arguments { gaits, speed, criterion, real_legs, vary, sample, designs, also, starts, seed, .. } = arguments;
     let (robot, gaits) = robots::robot_of(&Wanted::by(&gaits))?;
     let wanted = |beyond: &Beyond| also.iter().any(|name| name == beyond.name());
+    let mut names: Vec<String> = vary.iter().map(|vary| vary.name.clone()).collect();
     let made = match (&designs, sample) {
-        (Some(file), _) => table::designs(input::read(file)?).map_err(|why| format!("{}: {why}", input::name(file))),
+        (Some(file), _) => table::designs(input::read(file)?).map_err(|why| {
+            names = why.names.clone();
+            format!("{}: {why}", input::name(file))
+        }),
         (None, Some(count)) => Designs::sample(&vary, count as usize),
         (None, None) if vary.is_empty() => Ok(Designs::base()),
         (None, None) => Designs::grid(&vary),
     };
     // Names are looked at whether there are designs or not, so that everything wrong is said at once.
-    let named =
-        || Designs::grid(&vary.iter().map(|v| Vary { over: Over::Values(vec![1.0]), ..v.clone() }).collect::<Vec<_>>());
+    names.retain(|name| !name.is_empty());
+    let named = || Designs::listed(names.clone(), &[vec![1.0; names.len()]]);
     let unmade = made.as_ref().err().cloned();
     let study = Study {
         robot,

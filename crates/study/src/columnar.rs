@@ -3,7 +3,7 @@
 use crate::column::{Cell, Column, Kind};
 use crate::designs::Designs;
 use crate::row::Row;
-use crate::table::rows_or_faults;
+use crate::table::{Unlisted, listed};
 use bytes::Bytes;
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
@@ -73,13 +73,15 @@ fn schema(columns: &[Column]) -> Result<TypePtr, ParquetError> {
 ///
 /// # Errors
 /// What cannot be read, or everything in it that is no number, with its row, from 0.
-pub fn designs(file: Vec<u8>) -> Result<Designs, String> {
+pub fn designs(file: Vec<u8>) -> Result<Designs, Unlisted> {
     // The library panics where some files are damaged.
-    catch_unwind(|| read(file)).unwrap_or_else(|_| Err("it cannot be read: it is damaged".into()))
+    catch_unwind(|| read(file)).unwrap_or_else(|_| Err(Unlisted::unreadable("it cannot be read: it is damaged".into())))
 }
 
-fn read(file: Vec<u8>) -> Result<Designs, String> {
-    let unreadable = |why: ParquetError| format!("it cannot be read: {why}; tables are read plain or with Snappy");
+fn read(file: Vec<u8>) -> Result<Designs, Unlisted> {
+    let unreadable = |why: ParquetError| {
+        Unlisted::unreadable(format!("it cannot be read: {why}; tables are read plain or with Snappy"))
+    };
     let reader = SerializedFileReader::new(Bytes::from(file)).map_err(unreadable)?;
     let fields = reader.metadata().file_metadata().schema().get_fields();
     let names: Vec<String> = fields.iter().map(|field| field.name().into()).collect();
@@ -90,12 +92,13 @@ fn read(file: Vec<u8>) -> Result<Designs, String> {
         for (name, field) in row.get_column_iter() {
             match number(field).filter(|number| number.is_finite()) {
                 Some(number) => numbers.push(number),
+                None if matches!(field, Field::Null) => faults.push(format!("row {k}: there is no number for {name}")),
                 None => faults.push(format!("row {k}: `{field}` is no number for {name}")),
             }
         }
         rows.push(numbers);
     }
-    rows_or_faults(names, &rows, &faults)
+    listed(names, &rows, faults)
 }
 
 fn number(field: &Field) -> Option<f64> {
@@ -149,8 +152,8 @@ mod tests {
 
     #[test]
     fn everything_that_is_wrong_with_a_table_is_told_with_its_row() {
-        let told = designs(table(&[1.0, f64::NAN, 2.0], &[None, Some(9.81), Some(f64::INFINITY)])).unwrap_err();
-        for fault in ["row 0: `null` is no number for gravity", "row 1: `NaN`", "row 2: `inf`"] {
+        let told = designs(table(&[1.0, f64::NAN, 2.0], &[None, Some(9.81), Some(f64::INFINITY)])).unwrap_err().to_string();
+        for fault in ["row 0: there is no number for gravity", "row 1: `NaN`", "row 2: `inf`"] {
             assert!(told.contains(fault), "{told}");
         }
     }

@@ -3,6 +3,7 @@
 use crate::column::{Cell, Column};
 use crate::designs::Designs;
 use crate::row::Row;
+use std::fmt;
 
 /// The table as CSV (RFC 4180, UTF-8). Numbers have all of their digits; what is not there is empty.
 pub fn csv(columns: &[Column], rows: &[Row]) -> Result<Vec<u8>, csv::Error> {
@@ -30,27 +31,33 @@ const PARQUET: &[u8] = b"PAR1";
 ///
 /// # Errors
 /// What cannot be read, or everything in it that is no number, with its place.
-pub fn designs(file: Vec<u8>) -> Result<Designs, String> {
+pub fn designs(file: Vec<u8>) -> Result<Designs, Unlisted> {
     match file.starts_with(PARQUET) {
         #[cfg(feature = "parquet")]
         true => crate::columnar::designs(file),
         #[cfg(not(feature = "parquet"))]
-        true => Err("it is Parquet, without which this program was built: give CSV".into()),
-        false => listed(&String::from_utf8(file).map_err(|_| "it is neither text nor Parquet")?),
+        true => Err(Unlisted::unreadable("it is Parquet, without which this program was built: give CSV".into())),
+        false => match String::from_utf8(file) {
+            Ok(text) => of_text(&text),
+            Err(_) => Err(Unlisted::unreadable("it is neither text nor Parquet".into())),
+        },
     }
 }
 
 /// Designs from a CSV table: a column for each number under its name, a line for each design.
-fn listed(text: &str) -> Result<Designs, String> {
+fn of_text(text: &str) -> Result<Designs, Unlisted> {
+    let unreadable = |why: csv::Error| Unlisted::unreadable(why.to_string());
     let text = text.trim_start_matches(MARK);
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).flexible(true).from_reader(text.as_bytes());
-    let names: Vec<String> = reader.headers().map_err(|why| why.to_string())?.iter().map(String::from).collect();
+    let names: Vec<String> = reader.headers().map_err(unreadable)?.iter().map(String::from).collect();
     if names.iter().all(String::is_empty) {
-        return Err("it has no names of numbers in its first line".into());
+        return Err(Unlisted::unreadable("it has no names of numbers in its first line".into()));
     }
-    let (mut rows, mut faults) = (Vec::new(), Vec::new());
+    let nameless = names.iter().enumerate().filter(|(_, name)| name.is_empty());
+    let mut faults: Vec<String> = nameless.map(|(k, _)| format!("line 1: column {} has no name", k + 1)).collect();
+    let mut rows = Vec::new();
     for record in reader.records() {
-        let record = record.map_err(|why| why.to_string())?;
+        let record = record.map_err(unreadable)?;
         let line = record.position().map_or(0, csv::Position::line);
         if record.len() != names.len() {
             faults.push(format!("line {line}: {} numbers instead of {}", record.len(), names.len()));
@@ -59,12 +66,14 @@ fn listed(text: &str) -> Result<Designs, String> {
         for (name, text) in names.iter().zip(&record) {
             match text.parse::<f64>() {
                 Ok(number) if number.is_finite() => row.push(number),
+                _ if name.is_empty() => {}
+                _ if text.is_empty() => faults.push(format!("line {line}: there is no number for {name}")),
                 _ => faults.push(format!("line {line}: `{text}` is no number for {name}")),
             }
         }
         rows.push(row);
     }
-    rows_or_faults(names, &rows, &faults)
+    listed(names, &rows, faults)
 }
 
 /// What spreadsheets put before a text to say that it is UTF-8.
@@ -73,14 +82,34 @@ const MARK: char = '\u{feff}';
 /// Faults that are told; who has seen them knows the others.
 const TOLD: usize = 20;
 
-/// The designs, or what is wrong with their table.
-pub(crate) fn rows_or_faults(names: Vec<String>, rows: &[Vec<f64>], faults: &[String]) -> Result<Designs, String> {
-    if faults.is_empty() {
-        return Designs::listed(names, rows);
+/// What is wrong with a table of designs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Unlisted {
+    /// Names of its columns, as far as they can be read: they may be wrong too.
+    pub names: Vec<String>,
+    pub faults: Vec<String>,
+}
+
+impl Unlisted {
+    pub(crate) fn unreadable(why: String) -> Unlisted {
+        Unlisted { faults: vec![why], ..Unlisted::default() }
     }
-    let more = faults.len().saturating_sub(TOLD);
-    let told = faults.iter().take(TOLD).cloned().chain((more > 0).then(|| format!("and {more} more")));
-    Err(told.collect::<Vec<_>>().join("\n"))
+}
+
+impl fmt::Display for Unlisted {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let more = self.faults.len().saturating_sub(TOLD);
+        let told = self.faults.iter().take(TOLD).cloned().chain((more > 0).then(|| format!("and {more} more")));
+        write!(f, "{}", told.collect::<Vec<_>>().join("\n"))
+    }
+}
+
+/// The designs, if nothing is wrong with their table.
+pub(crate) fn listed(names: Vec<String>, rows: &[Vec<f64>], faults: Vec<String>) -> Result<Designs, Unlisted> {
+    if !faults.is_empty() {
+        return Err(Unlisted { names, faults });
+    }
+    Designs::listed(names, rows).map_err(Unlisted::unreadable)
 }
 
 #[cfg(test)]
@@ -89,7 +118,7 @@ mod tests {
     use crate::designs::Designs;
 
     fn designs(text: &str) -> Result<Designs, String> {
-        of_file(text.into())
+        of_file(text.into()).map_err(|why| why.to_string())
     }
 
     #[test]
@@ -106,9 +135,11 @@ mod tests {
             assert!(told.contains(fault), "{told}");
         }
         assert!(designs("").is_err());
+        let told = designs("a,\n1,\n,\n").unwrap_err();
+        assert_eq!(told, "line 1: column 2 has no name\nline 3: there is no number for a");
         let many = designs(&format!("a\n{}", "x\n".repeat(1000))).unwrap_err();
         assert!(many.ends_with("and 980 more") && many.lines().count() == 21, "{many}");
-        assert!(of_file(vec![0xff, 0xfe, 0x00]).unwrap_err().contains("neither text nor Parquet"));
+        assert!(of_file(vec![0xff, 0xfe, 0x00]).unwrap_err().to_string().contains("neither text nor Parquet"));
     }
 
     #[test]
