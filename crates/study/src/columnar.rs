@@ -152,7 +152,8 @@ mod tests {
 
     #[test]
     fn everything_that_is_wrong_with_a_table_is_told_with_its_row() {
-        let told = designs(table(&[1.0, f64::NAN, 2.0], &[None, Some(9.81), Some(f64::INFINITY)])).unwrap_err().to_string();
+        let told =
+            designs(table(&[1.0, f64::NAN, 2.0], &[None, Some(9.81), Some(f64::INFINITY)])).unwrap_err().to_string();
         for fault in ["row 0: there is no number for gravity", "row 1: `NaN`", "row 2: `inf`"] {
             assert!(told.contains(fault), "{told}");
         }
