@@ -119,8 +119,9 @@ impl Space {
         let shown: BTreeSet<usize> = self.worth_showing().into_iter().collect();
         let of_shown: BTreeSet<usize> =
             self.spots.iter().filter(|spot| shown.contains(&spot.point)).map(|spot| spot.design).collect();
-        let is_drawn =
-            |spot: &&Spot| spot.costs.is_some() && (spot.design % every == 0 || of_shown.contains(&spot.design));
+        let is_drawn = |spot: &&Spot| {
+            spot.costs.is_some() && (spot.design.is_multiple_of(every) || of_shown.contains(&spot.design))
+        };
         (every, self.spots.iter().filter(is_drawn).collect())
     }
 
@@ -354,8 +355,6 @@ fn front<'a>(group: &[&'a Spot], of: impl Fn(&Spot) -> Option<Xy>) -> Vec<(&'a S
 mod tests {
     use super::{Space, Spot, both, front};
     use piaffe_model::motion::{Costs, Criterion};
-    use serde_json::{Value, json};
-    use std::collections::{BTreeMap, BTreeSet};
 
     fn spot(point: usize, [torque, energy]: [f64; 2]) -> Spot {
         let costs = (torque > 0.0).then_some(Costs { energy, torque });
