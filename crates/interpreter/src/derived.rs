@@ -98,14 +98,20 @@ pub struct DerivedWhole {
 }
 
 impl DerivedWhole {
+    /// As it was derived before, if it was.
+    ///
     /// # Errors
     /// If the numbers make some that are none, or a kernel is too large.
     pub fn of(whole: &mechanism::Whole) -> Result<DerivedWhole, Unrunnable> {
-        stored(&format!("{whole:?}"), || {
-            let (ring, kernels) = whole_kernels(whole);
-            // On one thread: whoever asks first may be one of many, all of whom wait for this.
-            let programs: Vec<Program> = kernels.iter().map(|kernel| Program::new(&ring, kernel)).collect();
-            Ok(DerivedWhole { shapes: Shapes::new(&kernels), tapes: tapes(&kernels, &programs)? })
-        })
+        stored(&format!("{whole:?}"), || DerivedWhole::derive(whole))
+    }
+
+    /// # Errors
+    /// As for [`DerivedWhole::of`].
+    pub fn derive(whole: &mechanism::Whole) -> Result<DerivedWhole, Unrunnable> {
+        let (ring, kernels) = whole_kernels(whole);
+        // On one thread: whoever asks first may be one of many, all of whom wait for this.
+        let programs: Vec<Program> = kernels.iter().map(|kernel| Program::new(&ring, kernel)).collect();
+        Ok(DerivedWhole { shapes: Shapes::new(&kernels), tapes: tapes(&kernels, &programs)? })
     }
 }

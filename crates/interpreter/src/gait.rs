@@ -23,6 +23,8 @@ pub struct Interpreted {
     specification: Specification,
     description: Description,
     kernels: Kernels,
+    /// Whether it is a member of a family.
+    of_many: bool,
     whole: OnceLock<Option<Whole>>,
     latex: OnceLock<String>,
     levers: OnceLock<Vec<Lever>>,
@@ -42,11 +44,13 @@ impl Interpreted {
         let mechanism = mechanism(robot, gait)?;
         let derived = Derived::of(&mechanism)?;
         let description = description(&mechanism, key, &derived);
-        Ok(Interpreted::of(robot, gait, specification, description, Kernels::new(derived.tapes)))
+        let kernels = Kernels::new(derived.tapes);
+        let interpreted = Interpreted::member(robot, gait, specification, description, kernels);
+        Ok(Interpreted { of_many: false, ..interpreted })
     }
 
-    /// The gait with this description and these kernels.
-    pub(crate) fn of(
+    /// The gait of a member of a family, with this description and these kernels.
+    pub(crate) fn member(
         robot: &spec::Robot,
         gait: &spec::Gait,
         specification: Specification,
@@ -59,6 +63,7 @@ impl Interpreted {
             specification,
             description,
             kernels,
+            of_many: true,
             whole: OnceLock::new(),
             latex: OnceLock::new(),
             levers: OnceLock::new(),
@@ -116,7 +121,7 @@ macro_rules! gait {
             }
 
             fn whole(&self) -> Option<&dyn whole::Whole> {
-                let whole = self.whole.get_or_init(|| Whole::new(&locked(&self.robot, &self.gait).ok()?).ok());
+                let whole = self.whole.get_or_init(|| Whole::new(&locked(&self.robot, &self.gait).ok()?, self.of_many).ok());
                 whole.as_ref().map(|whole| whole as &dyn whole::Whole)
             }
 

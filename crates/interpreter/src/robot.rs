@@ -158,7 +158,7 @@ impl Robot {
         kernels: Kernels,
     ) -> Result<Interpreted, Unloadable> {
         let (gait, specification) = (self.specified_gait(name)?, self.known_specification(name)?);
-        Ok(Interpreted::of(&self.specified.robot, gait, specification, description, kernels))
+        Ok(Interpreted::member(&self.specified.robot, gait, specification, description, kernels))
     }
 
     pub(crate) fn specified(&self) -> &spec::Robot {

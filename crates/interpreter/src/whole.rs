@@ -17,10 +17,11 @@ pub struct Whole {
 }
 
 impl Whole {
-    /// Of a robot whose locked joints are gone.
-    pub fn new(robot: &Robot) -> Result<Whole, Unrunnable> {
+    /// Of a robot whose locked joints are gone. One of many robots is not asked about again: what is derived of it is not kept.
+    pub fn new(robot: &Robot, of_many: bool) -> Result<Whole, Unrunnable> {
         let whole = mechanism::Whole::new(robot);
-        let DerivedWhole { shapes, mut tapes } = DerivedWhole::of(&whole)?;
+        let derived = if of_many { DerivedWhole::derive(&whole) } else { DerivedWhole::of(&whole) };
+        let DerivedWhole { shapes, mut tapes } = derived?;
         let mut tape = |name| tapes.remove(name).unwrap_or_default();
         let joint = |j: &mechanism::WholeJoint| Joint { name: text(&j.name), rotor_inertia: j.rotor_inertia };
         let leg = |l: &mechanism::WholeLeg| Leg {

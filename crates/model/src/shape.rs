@@ -12,11 +12,10 @@
 //! assert_eq!(gradients.row(&out, 1), [2.1, 2.2, 2.3]);
 //! ```
 
-use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// A scalar, a vector or a matrix in a slice of numbers; row-major.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Block {
     at: usize,
     rows: usize,
