@@ -27,6 +27,8 @@ pub use piaffe_optimizer::{
 #[cfg(feature = "report")]
 pub use piaffe_report as report;
 pub use piaffe_sqp as sqp;
+#[cfg(feature = "study")]
+pub use piaffe_study as study;
 pub use piaffe_verify as verify;
 pub use piaffe_verify::certificate;
 pub use search::local::Task;

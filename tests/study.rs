@@ -158,8 +158,48 @@ fn everything_wrong_with_a_question_is_told_before_anything_is_computed() {
     assert!(!folder.path().join("bad").exists());
     std::fs::write(folder.path().join("table.csv"), "links.thigh.mass,gravty\n1.5,9.81\nheavy,9.81\n").unwrap();
     let asked = format!("study trot --speed 0.6 --designs table.csv --robot {SHIPPED}");
-    fails(folder.path(), &asked, &["table.csv", "line 3: `heavy` is no number"]);
+    fails(folder.path(), &asked, &["table.csv", "line 3: `heavy` is no number", "did you mean `gravity`"]);
+    fails(folder.path(), &format!("study trot --speed -1 --robot {SHIPPED}"), &["-1", "--speed", "positive"]);
+    let asked = format!("optimize trot --speed 0.6 --set links.thigh.mas=1 --set limits.frictoin=3 --robot {SHIPPED}");
+    fails(folder.path(), &asked, &["did you mean `links.thigh.mass`", "did you mean `limits.friction`"]);
     fails(folder.path(), &format!("{ASKED} {SHIPPED} --shard 3/2"), &["I/N"]);
+}
+
+/// Without a name walks are meant, and what is left out is said; `all` are all.
+#[test]
+fn gaits_that_fly_are_asked_for_by_name() {
+    let folder = tempdir().unwrap();
+    let rest = format!("--speed 1.0 --criterion torque --starts 1 --robot {SHIPPED}/rabbit");
+    let out = piaffe(folder.path(), &format!("study {rest}")).output().unwrap();
+    assert!(text(&out.stderr).contains("left out, since they leave the ground: run;"), "{}", text(&out.stderr));
+    let gaits = |folder: &Path| rows(folder).into_iter().map(|row| row["gait"].clone()).collect::<Vec<_>>();
+    assert_eq!(gaits(&folder.path().join("study")), ["walk"]);
+    succeeds(folder.path(), &format!("study all {rest} --out all"));
+    assert_eq!(gaits(&folder.path().join("all")), ["run", "walk"]);
+}
+
+/// Slopes of energy beside slopes of torque say nothing.
+#[test]
+fn what_is_least_in_different_criteria_has_no_common_slopes() {
+    let folder = tempdir().unwrap();
+    for criterion in ["energy", "torque"] {
+        succeeds(folder.path(), &format!("optimize trot --speed 0.6 --criterion {criterion} --json {criterion}.json"));
+    }
+    let difference: Value =
+        serde_json::from_str(&succeeds(folder.path(), "diff energy.json torque.json --json -")).unwrap();
+    assert!(difference["slopes"].as_array().unwrap().is_empty() && difference["prediction"].is_null());
+}
+
+/// What the limits of each real leg cost each robot.
+#[test]
+fn limits_at_each_real_leg_are_in_the_table() {
+    let folder = tempdir().unwrap();
+    let asked = "study amble --speed 0.4 --criterion energy --vary links.thigh.mass=1.5 --real-legs --robot";
+    succeeds(folder.path(), &format!("{asked} {SHIPPED}"));
+    let [row] = &rows(&folder.path().join("study"))[..] else { panic!() };
+    let number = |name: &str| row[name].parse::<f64>().unwrap();
+    assert!(number("cost") > 1.01 * number("virtual_cost"), "{row:?}");
+    succeeds(folder.path(), "verify study/walks");
 }
 
 /// What the slopes let expect of a small change, against the change itself; and both robots on one page.

@@ -43,8 +43,9 @@ impl Changes {
     /// Writes the changes into the files. Numbers that are named come last, and have the last word.
     ///
     /// # Errors
-    /// What is not there to be changed.
+    /// Everything that is not there to be changed.
     pub fn apply(&self, files: &mut RobotFiles) -> Result<(), String> {
+        let mut missing = Vec::new();
         let limits = [
             ("friction", self.friction),
             ("swing_clearance", self.swing_clearance),
@@ -52,21 +53,25 @@ impl Changes {
             ("min_platform_height", self.min_platform_height),
         ];
         for (limit, value) in limits {
-            value.map_or(Ok(()), |value| files.set(&format!("limits.{limit}"), value))?;
+            missing.extend(value.and_then(|value| files.set(&format!("limits.{limit}"), value).err()));
         }
         if let Some(duration) = self.duration {
-            self.set_durations(files, duration)?;
+            missing.extend(self.set_durations(files, duration).err());
         }
         if let Some(scale) = self.torque_scale {
             let torque = |name: &str| name.starts_with("actuators.") && name.ends_with(".max_torque");
             for (name, value) in files.numbers().into_iter().filter(|(name, _)| torque(name)) {
-                files.set(&name, scale * value)?;
+                missing.extend(files.set(&name, scale * value).err());
             }
         }
         for Load { mass, at } in &self.loads {
-            files.robot.text = spec::load(&files.robot.text, *mass, *at)?;
+            match spec::load(&files.robot.text, *mass, *at) {
+                Ok(loaded) => files.robot.text = loaded,
+                Err(why) => missing.push(why),
+            }
         }
-        self.numbers.iter().try_for_each(|(name, value)| files.set(name, *value))
+        missing.extend(self.numbers.iter().filter_map(|(name, value)| files.set(name, *value).err()));
+        if missing.is_empty() { Ok(()) } else { Err(missing.join("\n")) }
     }
 
     /// Of half steps, or of all phases in which a foot stands, in every gait.

@@ -15,9 +15,14 @@ pub mod emit;
 pub mod expr;
 pub mod mechanism;
 pub mod program;
+#[path = "../support/sources.rs"]
+pub mod sources;
 pub mod spec;
 mod turns;
 pub mod typeset;
 
 pub use changes::{Changes, Load};
 pub use config::{Config, Generated, RobotFiles, SpecFile, Specified, check, generate, generate_families, specified};
+
+/// Tells this derivation from that of any other version: a hash of its sources.
+pub const SOURCES: &str = env!("SOURCES");

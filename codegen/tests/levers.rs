@@ -2,7 +2,8 @@
 
 mod common;
 
-use common::{FAMILIES, GAITS, files, specification, with_phases};
+use common::{FAMILIES, GAITS, files, shipped, specification, with_phases};
+use piaffe_codegen::dynamics::{kernels, lowest};
 use piaffe_codegen::mechanism::{Family, Lever, Mechanism, levers, parameters};
 use piaffe_codegen::spec::{Gait, RobotFile, parse_gait, parse_robot};
 
@@ -59,6 +60,23 @@ fn slopes_are_those_of_a_changed_text() {
             let error = (after - before - slope * by).abs();
             assert!(error <= 1e-3 * (slope * by).abs() + 1e-14, "{name} {number}: {before} {after} {slope}");
         }
+    }
+}
+
+/// So what is derived of one serves for all that differ in their limits.
+#[test]
+fn limits_have_no_part_in_the_equations_of_motion() {
+    for key in GAITS {
+        let mechanism = shipped(key);
+        let unlimited = mechanism.unlimited();
+        assert!(mechanism.limiting_numbers().iter().any(|number| *number != 0.0));
+        assert!(unlimited.limiting_numbers().iter().all(|number| *number == 0.0), "{key}");
+        assert_eq!(unlimited.numbers(), mechanism.numbers());
+        let derived = |of: &Mechanism| {
+            let (mut model, kernels) = kernels(of);
+            (lowest(&mut model), format!("{kernels:?}"))
+        };
+        assert!(derived(&unlimited) == derived(&mechanism), "{key}");
     }
 }
 

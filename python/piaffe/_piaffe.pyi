@@ -84,6 +84,9 @@ class Robot:
     def gaits(self) -> list[str]:
         """Names of its gaits."""
     @property
+    def usual_gaits(self) -> list[str]:
+        """Names of those that a study asks about where none is named: those that never leave the ground; where all fly, all."""
+    @property
     def notes(self) -> list[str]:
         """What an import took, assumed and dropped, a sentence each."""
     @property
@@ -154,6 +157,7 @@ class Question:
         gaits: Sequence[str],
         criteria: Sequence[str],
         speeds: Sequence[float],
+        real_legs: bool,
         starts: int | None,
         seed: int,
         beyond: Sequence[str],

@@ -35,6 +35,7 @@ def study(
     gait: Union[str, Iterable[str], None] = None,
     speed: Union[float, Iterable[float]],
     criterion: Union[str, Iterable[str]] = "energy",
+    real_legs: bool = False,
     also: Union[str, Iterable[str]] = (),
     starts: Optional[int] = None,
     seed: int = 1,
@@ -47,7 +48,9 @@ def study(
     """The optima of every design with every gait, criterion and speed (m/s): a point each.
 
     `designs` are mappings of numbers as in `Robot.set`, or a table of them (of pandas, of pyarrow, or a mapping of columns); a number
-    that a design does not name stays as it is. Without designs the robot itself is asked about, and without a `gait` all that it has.
+    that a design does not name stays as it is. Without designs the robot itself is asked about, and without a `gait` those that never
+    leave the ground (where all fly, all). `gait="all"` are those that fly too, whose searches take ten times as long. With `real_legs` the
+    limits hold at each real leg too: `cost` is then the real joints', and `virtual_cost` that without these limits.
     `also` is what is told of an optimum beyond its receipt: "certificate", "slopes", "stability".
 
     A point is sought from the optima of `robot` itself, and from `starts` random starts of `seed` that know nothing of these: 1 by
@@ -65,10 +68,16 @@ def study(
     Raises `Error` where there is no such question, before anything is computed.
     """
     names, rows = _designs(robot, designs)
-    gaits, criteria, extras = (_list(given) for given in (robot.gaits if gait is None else gait, criterion, also))
+    gaits, criteria, extras = _gaits(robot, gait), _list(criterion), _list(also)
     speeds = [speed] if isinstance(speed, (int, float)) else list(speed)
-    question = Question(robot, names, rows, gaits, criteria, speeds, starts, seed, extras)
+    question = Question(robot, names, rows, gaits, criteria, speeds, real_legs, starts, seed, extras)
     return Study(question, executor, chunk, in_flight, retries, None if journal is None else Path(journal))
+
+
+def _gaits(robot: Robot, given: Union[str, Iterable[str], None]) -> List[str]:
+    if given is None:
+        return robot.usual_gaits
+    return robot.gaits if given == "all" else _list(given)
 
 
 def _list(given: Union[str, Iterable[str]]) -> List[str]:

@@ -37,6 +37,7 @@ mod _piaffe {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        piaffe::interpreter::Store::of_user().choose();
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

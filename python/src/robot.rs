@@ -183,6 +183,12 @@ impl Robot {
         self.robot.gaits()
     }
 
+    /// Names of those that a study asks about where none is named: those that never leave the ground; where all fly, all.
+    #[getter]
+    fn usual_gaits(&self) -> Vec<String> {
+        self.robot.usual_gaits()
+    }
+
     /// What an import took, assumed and dropped, a sentence each.
     #[getter]
     fn notes(&self) -> Vec<String> {

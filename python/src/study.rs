@@ -4,8 +4,8 @@ use crate::error::Error;
 use crate::optimize::criterion;
 use crate::result::text;
 use crate::robot::Robot;
-use crate::work::{Stop, work};
-use piaffe_study::{Answers, Beyond, Cell, Column, Designs, Kind, Point, Search, Study};
+use crate::work::{Stop, apart, work};
+use piaffe::study::{Answers, Beyond, Cell, Column, Designs, Kind, Point, Search, Study};
 use pyo3::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
@@ -40,6 +40,7 @@ type Parts = (
     Vec<String>,
     Vec<&'static str>,
     Vec<f64>,
+    bool,
     Option<usize>,
     u64,
     Vec<&'static str>,
@@ -50,12 +51,14 @@ impl Question {
     #[new]
     #[allow(clippy::too_many_arguments)]
     fn new(
+        py: Python<'_>,
         robot: &Robot,
         names: Vec<String>,
         rows: Vec<Vec<f64>>,
         gaits: Vec<String>,
         criteria: Vec<String>,
         speeds: Vec<f64>,
+        real_legs: bool,
         starts: Option<usize>,
         seed: u64,
         beyond: Vec<String>,
@@ -66,10 +69,11 @@ impl Question {
             gaits,
             criteria: criteria.iter().map(|name| criterion(name)).collect::<PyResult<_>>()?,
             speeds,
+            real_legs,
             search: Search { starts, seed },
             beyond: beyond.iter().map(|name| self::beyond(name)).collect::<PyResult<_>>()?,
         };
-        match study.faults() {
+        match apart(py, || study.faults())? {
             faults if faults.is_empty() => Ok(Question { robot: robot.clone(), study }),
             faults => Err(Error::new_err(faults.join("\n"))),
         }
@@ -114,12 +118,13 @@ impl Question {
     }
 
     fn __getnewargs__(&self) -> Parts {
-        let Study { designs, gaits, criteria, speeds, search, beyond, .. } = &self.study;
+        let Study { designs, gaits, criteria, speeds, real_legs, search, beyond, .. } = &self.study;
         let rows = (0..designs.count()).map(|design| designs.numbers(design).to_vec()).collect();
         let (criteria, beyond) =
             (criteria.iter().map(|c| c.name()).collect(), beyond.iter().map(|b| b.name()).collect());
         let (names, gaits) = (designs.names().to_vec(), gaits.clone());
-        (self.robot.clone(), names, rows, gaits, criteria, speeds.clone(), search.starts, search.seed, beyond)
+        let robot = self.robot.clone();
+        (robot, names, rows, gaits, criteria, speeds.clone(), *real_legs, search.starts, search.seed, beyond)
     }
 }
 

@@ -31,16 +31,33 @@ def result(trot: piaffe.Gait) -> piaffe.Result:
     return piaffe.optimize(trot, 0.6)
 
 
-@pytest.fixture(scope="session")
-def program() -> Callable[..., str]:
+def installed(*words: str) -> subprocess.CompletedProcess[str]:
     """The command line as it is installed, run with these words in the repository."""
     beside = Path(sys.executable).parent / ("piaffe.exe" if os.name == "nt" else "piaffe")
     command = str(beside) if beside.exists() else shutil.which("piaffe")
+    assert command is not None
+    return subprocess.run([command, *words], cwd=ROOT, capture_output=True, text=True, encoding="utf-8")
+
+
+@pytest.fixture(scope="session")
+def program() -> Callable[..., str]:
+    """The command line: what it answers to these words."""
 
     def run(*words: str) -> str:
-        assert command is not None
-        done = subprocess.run([command, *words], cwd=ROOT, capture_output=True, text=True, encoding="utf-8")
+        done = installed(*words)
         assert done.returncode == 0, done.stderr
         return done.stdout
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def failing() -> Callable[..., str]:
+    """The command line: what it says where it cannot do what these words ask for."""
+
+    def run(*words: str) -> str:
+        done = installed(*words)
+        assert done.returncode == 1, done.stdout
+        return done.stderr
 
     return run

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import pickle
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -108,3 +111,20 @@ def test_options_of_an_import_are_the_robots(tmp_path: Path) -> None:
         piaffe.Robot.from_urdf(file, range={"left_hip": (1.0, float("nan"))})
     with pytest.raises(OSError, match="nowhere.urdf"):
         piaffe.Robot.from_urdf(tmp_path / "nowhere.urdf")
+
+
+def test_what_is_derived_serves_the_next_process(tmp_path: Path) -> None:
+    program = "import piaffe; print(piaffe.optimize(piaffe.robots['rabbit'].gait('walk'), 0.6, 'torque', starts=1).cost)"
+
+    def run(cache: str) -> str:
+        # Elsewhere: beside the sources it would find those, without what is compiled.
+        here, variables = Path(__file__).parent, {**os.environ, "PIAFFE_CACHE": cache}
+        done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=here, env=variables)
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    without = run("off")
+    assert run(str(tmp_path)) == without
+    kept = sorted(tmp_path.iterdir())
+    assert kept
+    assert run(str(tmp_path)) == without and sorted(tmp_path.iterdir()) == kept

@@ -77,6 +77,27 @@ def test_the_command_line_writes_the_same_table(
     assert study.table().to_csv() == (tmp_path / "study.csv").read_text(encoding="utf-8")
 
 
+def test_without_a_gait_walks_are_meant(quadruped: piaffe.Robot) -> None:
+    assert quadruped.usual_gaits == ["amble", "curvet", "trot"]
+    asked: dict[str, Any] = {"criterion": "torque", "speed": 1.0, "starts": 1}
+    rabbit = piaffe.robots["rabbit"]
+    assert piaffe.study(rabbit, **asked).table().column("gait") == ["walk"]
+    assert len(piaffe.study(rabbit, gait="all", **asked)) == 2
+    flying = piaffe.Robot(rabbit.files["robot.toml"], {"run": rabbit.files["gaits/run.toml"]})
+    assert flying.usual_gaits == ["run"], "where all fly, all"
+
+
+def test_limits_at_each_real_leg_are_those_of_one_alone(quadruped: piaffe.Robot) -> None:
+    asked: dict[str, Any] = {"gait": "amble", "criterion": "torque", "speed": 0.4}
+    (row,) = piaffe.study(quadruped, real_legs=True, **asked).table()
+    alone = piaffe.optimize(quadruped.gait("amble"), 0.4, "torque", real_legs=True)
+    assert row["cost"] == pytest.approx(alone.cost, rel=1e-6)
+    assert row["virtual_cost"] == pytest.approx(alone.entries["virtual_cost"], rel=1e-6)
+    assert row["cost"] > 1.01 * row["virtual_cost"]
+    (without,) = piaffe.study(quadruped, **asked).table()
+    assert "virtual_cost" not in without and without["cost"] == pytest.approx(row["virtual_cost"], rel=1e-6)
+
+
 def test_a_number_that_a_design_does_not_name_stays(quadruped: piaffe.Robot) -> None:
     rows = piaffe.study(quadruped, DESIGNS[:3], gait="trot", speed=0.5).table()
     assert rows.column("links.thigh.mass") == [1.4, 1.8, quadruped.numbers["links.thigh.mass"]]

@@ -171,7 +171,7 @@ impl Gait for Copy<'_> {
         &self.description
     }
 
-    fn latex(&self) -> &'static str {
+    fn latex(&self) -> &str {
         self.gait.latex()
     }
 

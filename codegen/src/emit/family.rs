@@ -73,7 +73,7 @@ fn implementation<'f>(
                 &self.description
             }
 
-            fn latex(&self) -> &'static str {
+            fn latex(&self) -> &str {
                 #latex
             }
 

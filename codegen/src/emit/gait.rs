@@ -77,6 +77,9 @@ fn implementation(
         /// What the gait is made of, in numbers.
         pub static DESCRIPTION: #runtime::Description = #description;
 
+        /// Numbers of the specification, and what depends on them.
+        static LEVERS: &[#runtime::Lever] = &[#(#levers),*];
+
         /// What it was derived from.
         pub static SPECIFICATION: #runtime::Specification = #runtime::Specification {
             robot: std::borrow::Cow::Borrowed(#robot_file),
@@ -92,15 +95,15 @@ fn implementation(
                 Some(&SPECIFICATION)
             }
 
-            fn latex(&self) -> &'static str {
+            fn latex(&self) -> &str {
                 #latex
             }
 
-            fn levers(&self) -> &'static [#runtime::Lever] {
-                &[#(#levers),*]
+            fn levers(&self) -> &[#runtime::Lever] {
+                LEVERS
             }
 
-            fn whole(&self) -> Option<&'static dyn #runtime::whole::Whole> {
+            fn whole(&self) -> Option<&dyn #runtime::whole::Whole> {
                 Some(&super::#whole::Whole)
             }
 
@@ -120,10 +123,10 @@ fn lever(lever: &Lever, runtime: &Path) -> Written<TokenStream> {
     Ok(quote! {
         #runtime::Lever {
             name: #name,
-            numbers: &[#(#numbers),*],
+            numbers: std::borrow::Cow::Borrowed(&[#(#numbers),*]),
             unit: #unit,
             value: #value,
-            slopes: &[#(#slopes),*],
+            slopes: std::borrow::Cow::Borrowed(&[#(#slopes),*]),
         }
     })
 }

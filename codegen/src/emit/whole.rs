@@ -51,14 +51,14 @@ fn implementation(whole: &Whole, functions: &[Function], runtime: &Path) -> Writ
         pub static DESCRIPTION: #runtime::whole::Description = #runtime::whole::Description {
             robot: #robot,
             gravity: #gravity,
-            bodies: &[#(#bodies),*],
-            joints: &[#(#joints),*],
-            legs: &[#(#legs),*],
-            shapes: &#shapes,
+            bodies: std::borrow::Cow::Borrowed(&[#(#bodies),*]),
+            joints: std::borrow::Cow::Borrowed(&[#(#joints),*]),
+            legs: std::borrow::Cow::Borrowed(&[#(#legs),*]),
+            shapes: #shapes,
         };
 
         impl #runtime::whole::Whole for Whole {
-            fn description(&self) -> &'static #runtime::whole::Description {
+            fn description(&self) -> &#runtime::whole::Description {
                 &DESCRIPTION
             }
 

@@ -237,6 +237,20 @@ impl Mechanism {
         let heights = [l.min_platform_height, l.body_clearance];
         self.joints.iter().flat_map(of_joint).chain(of_gait).chain(durations).chain(heights).collect()
     }
+
+    /// The same with zero for each of them: mechanisms that differ in nothing else have the same equations of motion.
+    pub fn unlimited(&self) -> Mechanism {
+        let mut unlimited = self.clone();
+        for j in &mut unlimited.joints {
+            j.range = [0.0; 2];
+            [j.max_torque, j.unloaded_speed, j.loaded_speed, j.damping, j.coulomb] = [0.0; 5];
+        }
+        unlimited.phases.iter_mut().for_each(|phase| phase.duration = [0.0; 2]);
+        let l = &mut unlimited.limits;
+        [l.friction, l.min_vertical_force, l.swing_clearance] = [0.0; 3];
+        [l.min_platform_height, l.body_clearance] = [0.0; 2];
+        unlimited
+    }
 }
 
 /// Visits all numbers of a specification: those of the robot, then what only limits.

@@ -202,6 +202,7 @@ pub const ITEMS: &[&str] = &[
     "InertiaAndBias",
     "Inverse",
     "InverseJacobian",
+    "LEVERS",
     "Landing",
     "LandingCurvature",
     "Late",

@@ -20,20 +20,25 @@ pub fn is_standard(file: &Path) -> bool {
     file.as_os_str() == "-"
 }
 
-/// The text of `file`, or of standard input for `-`.
-pub fn read_text(file: &Path) -> anyhow::Result<String> {
+/// What is in `file`, or comes from standard input for `-`.
+pub fn read(file: &Path) -> anyhow::Result<Vec<u8>> {
     let cannot = || format!("cannot read {}", name(file));
-    let mut text = String::new();
+    let mut bytes = Vec::new();
     let read = if is_standard(file) {
-        std::io::stdin().lock().take(LARGEST + 1).read_to_string(&mut text)
+        std::io::stdin().lock().take(LARGEST + 1).read_to_end(&mut bytes)
     } else {
-        std::fs::File::open(file).and_then(|f| f.take(LARGEST + 1).read_to_string(&mut text))
+        std::fs::File::open(file).and_then(|f| f.take(LARGEST + 1).read_to_end(&mut bytes))
     };
     let length = read.with_context(cannot)?;
     if length as u64 > LARGEST {
         bail!("{}: it has more than {} MB", cannot(), LARGEST >> 20);
     }
-    Ok(text)
+    Ok(bytes)
+}
+
+/// The text of `file`, or of standard input for `-`.
+pub fn read_text(file: &Path) -> anyhow::Result<String> {
+    String::from_utf8(read(file)?).with_context(|| format!("cannot read {}: it is no text", name(file)))
 }
 
 /// Reads and parses `file`, or standard input for `-`.

@@ -33,13 +33,14 @@ use asked::Asked;
 pub use built::Build;
 use clap::builder::{PossibleValuesParser, TypedValueParser, ValueParser};
 use clap::error::ErrorKind;
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use piaffe_codegen::Changes;
+use piaffe_interpreter::Store;
 use piaffe_model::motion::Criterion;
 use piaffe_optimizer::examine::Examination;
 use piaffe_optimizer::search::local::Task;
 use piaffe_optimizer::search::multi_start::Settings;
-use robots::by_name;
+use robots::{Wanted, by_name};
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -69,7 +70,8 @@ const NOT_CONFIRMED: u8 = 4;
                   piaffe sweep --speeds 0.2..1.2:0.1 --out sweep     many speeds\n\n\
                   Exit codes: 0 success, 1 something failed, 2 wrong usage, 3 no optimum (infeasible or not converged),\n\
                   4 a result was not confirmed.\n\
-                  NO_COLOR=1 turns colours off. Files are written whole or not at all, also when the program is interrupted."
+                  NO_COLOR=1 turns colours off. Files are written whole or not at all, also when the program is interrupted.\n\
+                  What is derived without a compiler is kept in ~/.cache/piaffe: PIAFFE_CACHE=DIR keeps it elsewhere, PIAFFE_CACHE=off nowhere."
 )]
 struct Arguments {
     #[command(subcommand)]
@@ -237,8 +239,8 @@ enum Command {
         after_help = "Example:\n  piaffe sweep --gait trot --gait amble --criterion all --speeds 0.1..1.6:0.1 --out sweep"
     )]
     Sweep {
-        /// May be given several times; if it is not given, the gaits of the first robot that never leave the ground. `all` are those
-        /// that fly too, whose searches take ten times as long.
+        /// May be given several times; if it is not given, the gaits of the first robot that never leave the ground (where all fly, all).
+        /// `all` are those that fly too, whose searches take ten times as long.
         #[arg(long, value_parser = gait_names_or_all())]
         gait: Vec<String>,
         /// energy, torque or all; may be given several times.
@@ -340,9 +342,24 @@ impl Arguments {
     }
 }
 
-/// The command line itself, for whoever describes it.
+/// The command line itself.
 fn command() -> clap::Command {
-    Arguments::command()
+    with_negative_numbers(Arguments::command())
+}
+
+/// A number with a sign is a value, which can be wrong as a value, and no option that nobody knows.
+fn with_negative_numbers(command: clap::Command) -> clap::Command {
+    let of_arg = |arg: clap::Arg| match arg.get_action().takes_values() {
+        true => arg.allow_negative_numbers(true),
+        false => arg,
+    };
+    command.mut_args(of_arg).mut_subcommands(with_negative_numbers)
+}
+
+fn parse(typed: &[OsString]) -> Result<Arguments, clap::Error> {
+    let mut command = command();
+    let arguments = command.try_get_matches_from_mut(typed).and_then(|found| Arguments::from_arg_matches(&found));
+    arguments.map_err(|error| error.format(&mut command))
 }
 
 /// What was typed. The names that a gait can have depend on the robot that is asked for: that is read first.
@@ -351,7 +368,7 @@ fn read(typed: &[OsString]) -> Result<Arguments, u8> {
         let _ = error.print();
         error.exit_code() as u8
     };
-    let chosen = match Arguments::try_parse_from(typed) {
+    let chosen = match parse(typed) {
         Ok(first) if first.is_of_no_robot() => {
             if first.robot.is_some() || !first.asked.changes().is_empty() {
                 let why = "--robot, --set and limits are for commands about a robot's gaits and results";
@@ -367,7 +384,7 @@ fn read(typed: &[OsString]) -> Result<Arguments, u8> {
         output::error(&error);
         return Err(FAILED);
     }
-    Arguments::try_parse_from(typed).map_err(usage)
+    parse(typed).map_err(usage)
 }
 
 /// Runs the program for the robots of `build`.
@@ -379,6 +396,7 @@ pub fn run(build: Build) -> ExitCode {
 /// run that later ones find.
 pub fn run_with(build: Build, typed: &[OsString]) -> u8 {
     built::set(build);
+    Store::of_user().choose();
     let arguments = match read(typed) {
         Ok(arguments) => arguments,
         Err(code) => return code,
@@ -410,11 +428,8 @@ fn gait_names() -> ValueParser {
     robots::keys().map_or_else(ValueParser::string, |keys| PossibleValuesParser::new(keys).into())
 }
 
-/// Instead of the names of gaits: all of them.
-const ALL: &str = "all";
-
 fn gait_names_or_all() -> ValueParser {
-    let names = |keys: Vec<&'static str>| PossibleValuesParser::new([ALL].into_iter().chain(keys)).into();
+    let names = |keys: Vec<&'static str>| PossibleValuesParser::new([robots::ALL].into_iter().chain(keys)).into();
     robots::keys().map_or_else(ValueParser::string, names)
 }
 
@@ -438,12 +453,7 @@ fn answer(arguments: Arguments) -> anyhow::Result<bool> {
         Some(Command::Verify { results, json }) => verify::run(&results, json.as_deref()),
         Some(Command::Report { results, detail, out }) => report::run(&results, detail, &out),
         Some(Command::Sweep { gait, criterion, speeds, real_legs, folder, starts, seed, examine }) => {
-            let named = || gait.iter().map(|gait| by_name(gait)).collect::<anyhow::Result<_>>();
-            let gaits: Vec<_> = match &gait[..] {
-                [] => robots::first()?.into_iter().filter(|gait| !gait.description().flies()).collect(),
-                names if names.iter().any(|name| name == ALL) => robots::first()?,
-                _ => named()?,
-            };
+            let gaits = robots::wanted(&Wanted::by(&gait))?;
             sweep::run(&gaits, real_legs, &criteria(&criterion), &speeds, &folder, &settings(starts, seed, examine))
         }
         Some(Command::Diff { a, b, json }) => diff::run(&a, &b, json.as_deref()),

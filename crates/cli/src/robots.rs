@@ -32,6 +32,9 @@ enum Origin {
     Files(Arc<Result<Robot, String>>),
 }
 
+/// Instead of the names of gaits: all of them.
+pub const ALL: &str = "all";
+
 /// Of this run; chosen once, when it starts.
 static CHOICES: OnceLock<Vec<Choice>> = OnceLock::new();
 
@@ -163,6 +166,34 @@ pub fn first() -> anyhow::Result<Vec<Loaded>> {
     choices().iter().filter(|choice| !choice.key.contains('/')).map(Choice::gait).collect()
 }
 
+/// The gaits that are wanted, in the order in which they are named.
+///
+/// # Errors
+/// If they cannot be derived.
+pub fn wanted(wanted: &Wanted) -> anyhow::Result<Vec<Loaded>> {
+    match wanted {
+        Wanted::Usual => {
+            let (walks, flights): (Vec<Loaded>, Vec<Loaded>) =
+                first()?.into_iter().partition(|gait| !gait.description().flies());
+            if walks.is_empty() {
+                return Ok(flights);
+            }
+            note_left_out(flights.into_iter().map(|gait| gait.description().key.to_string()));
+            Ok(walks)
+        }
+        Wanted::All => first(),
+        Wanted::Named(names) => names.iter().map(|name| by_name(name)).collect(),
+    }
+}
+
+/// Says which gaits were not meant, and how they are.
+fn note_left_out(gaits: impl Iterator<Item = String>) {
+    let names: Vec<String> = gaits.collect();
+    if !names.is_empty() {
+        output::note(&format!("left out, since they leave the ground: {}; name them, or `{ALL}`", names.join(", ")));
+    }
+}
+
 /// The gaits of the robot of a module.
 fn of_module(module: &str) -> impl Iterator<Item = &'static Choice> {
     choices().iter().filter(move |choice| built::module(choice.key) == module)
@@ -173,16 +204,36 @@ pub fn of_same_robot(key: &str) -> impl Iterator<Item = Loaded> {
     of_module(built::module(key)).filter_map(|choice| choice.gait().ok())
 }
 
-/// The robot whose gaits these are, as its files describe it, and their names; without names all gaits of the robot that needs none.
+/// Which gaits are meant.
+pub enum Wanted {
+    /// Those that are meant where none is named ([`Robot::usual_gaits`]).
+    Usual,
+    All,
+    Named(Vec<String>),
+}
+
+impl Wanted {
+    /// By the names that were typed.
+    pub fn by(names: &[String]) -> Wanted {
+        match names {
+            [] => Wanted::Usual,
+            names if names.iter().any(|name| name == ALL) => Wanted::All,
+            names => Wanted::Named(names.to_vec()),
+        }
+    }
+}
+
+/// The robot whose gaits are wanted, as its files describe it, and their names; of the robot that needs no name where none is named.
 ///
 /// # Errors
 /// If they are of several robots, or there are mistakes in its files.
-pub fn robot_of(names: &[String]) -> anyhow::Result<(Robot, Vec<String>)> {
-    let first = || choices().iter().filter(|choice| !choice.key.contains('/')).map(|choice| choice.key.to_string());
-    let names: Vec<String> = if names.is_empty() { first().collect() } else { names.to_vec() };
+pub fn robot_of(wanted: &Wanted) -> anyhow::Result<(Robot, Vec<String>)> {
+    let names = if let Wanted::Named(names) = wanted { names.as_slice() } else { &[] };
     let modules: BTreeSet<&str> = names.iter().map(|name| built::module(name)).collect();
-    let [module] = Vec::from_iter(modules)[..] else {
-        return Err(anyhow!("a study is about one robot: {} are gaits of several", names.join(", ")));
+    let module = match Vec::from_iter(modules)[..] {
+        [] => "",
+        [module] => module,
+        _ => return Err(anyhow!("a study is about one robot: {} are gaits of several", names.join(", "))),
     };
     let robot = match of_module(module).map(|choice| &choice.origin).next() {
         Some(Origin::Files(robot)) => (**robot).clone().map_err(|why| anyhow!("{why}"))?,
@@ -192,6 +243,15 @@ pub fn robot_of(names: &[String]) -> anyhow::Result<(Robot, Vec<String>)> {
                 .collect();
             Robot::new(of_build_files(module, &gaits))?
         }
+    };
+    let names = match wanted {
+        Wanted::Usual => {
+            let usual = robot.usual_gaits();
+            note_left_out(robot.gaits().into_iter().filter(|gait| !usual.contains(gait)));
+            usual
+        }
+        Wanted::All => robot.gaits(),
+        Wanted::Named(names) => names.clone(),
     };
     Ok((robot, names))
 }

@@ -2,22 +2,24 @@
 
 use super::digits::decimal;
 use super::journal::Folder;
-use super::{criteria, gait_names, input, output, report, robots, sweep, whole};
+use super::robots::Wanted;
+use super::{criteria, gait_names_or_all, input, output, report, robots, sweep, whole};
 use anyhow::{Context, bail};
 use clap::builder::PossibleValuesParser;
 use indicatif::{ProgressBar, ProgressStyle};
 use piaffe_optimizer::search::journal::Journal;
 use piaffe_report::space::{Space, Spot};
 use piaffe_report::{Extremes, Record, Report};
-use piaffe_study::{Answers, Beyond, Column, Designs, Over, Question, Row, Search, Shard, Study, Vary, table};
+use piaffe_study::{Answers, Beyond, Column, Designs, Question, Row, Search, Shard, Study, Vary, table};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// All gaits of the first robot if none is given.
-    #[arg(value_parser = gait_names(), value_name = "GAIT")]
+    /// If none is given, the gaits of the first robot that never leave the ground (where all fly, all). `all` are those that fly too, whose
+    /// searches take ten times as long.
+    #[arg(value_parser = gait_names_or_all(), value_name = "GAIT")]
     pub gaits: Vec<String>,
     /// Mean forward speeds: a list, or FROM..TO:STEP, m/s.
     #[arg(long, value_parser = sweep::parse_speeds)]
@@ -25,6 +27,10 @@ pub struct Arguments {
     /// energy, torque or all; may be given several times.
     #[arg(long, value_parser = PossibleValuesParser::new(["energy", "torque", "all"]), default_value = "all")]
     criterion: Vec<String>,
+    /// Impose contact, torque and speed limits at each real leg, not only at the virtual ones. `cost` is then the real joints', and
+    /// `virtual_cost` that without these limits.
+    #[arg(long)]
+    real_legs: bool,
     /// A number of the specification and its values: NAME=FROM..TO:STEP or NAME=A,B,C; may be given several times, for every
     /// combination. Several numbers at once with braces: 'links.{left,right}_shin.mass=1.0..2.0:0.1'.
     #[arg(long, value_name = "NAME=VALUES")]
@@ -32,7 +38,7 @@ pub struct Arguments {
     /// So many robots spread evenly over the intervals of --vary, NAME=FROM..TO, instead of every combination.
     #[arg(long, value_name = "N", requires = "vary", value_parser = clap::value_parser!(u32).range(1..))]
     sample: Option<u32>,
-    /// A CSV table of robots: a column for each number under its name, a line for each robot.
+    /// A table of robots, CSV or Parquet: a column for each number under its name, a line for each robot.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["vary", "sample"])]
     designs: Option<PathBuf>,
     /// What to tell of each optimum beyond its receipt; each takes about as long as finding it.
@@ -94,20 +100,22 @@ pub fn run(arguments: Arguments) -> anyhow::Result<bool> {
 
 /// The study that is asked for, if nothing is wrong with it.
 fn asked(arguments: Arguments) -> anyhow::Result<Study> {
-    let Arguments { gaits, speed, criterion, vary, sample, designs, also, starts, seed, .. } = arguments;
-    let (robot, gaits) = robots::robot_of(&gaits)?;
+    let Arguments { gaits, speed, criterion, real_legs, vary, sample, designs, also, starts, seed, .. } = arguments;
+    let (robot, gaits) = robots::robot_of(&Wanted::by(&gaits))?;
     let wanted = |beyond: &Beyond| also.iter().any(|name| name == beyond.name());
+    let mut names: Vec<String> = vary.iter().map(|vary| vary.name.clone()).collect();
     let made = match (&designs, sample) {
-        (Some(file), _) => {
-            table::designs(&input::read_text(file)?).map_err(|why| format!("{}: {why}", input::name(file)))
-        }
+        (Some(file), _) => table::designs(input::read(file)?).map_err(|why| {
+            names = why.names.clone();
+            format!("{}: {why}", input::name(file))
+        }),
         (None, Some(count)) => Designs::sample(&vary, count as usize),
         (None, None) if vary.is_empty() => Ok(Designs::base()),
         (None, None) => Designs::grid(&vary),
     };
     // Names are looked at whether there are designs or not, so that everything wrong is said at once.
-    let named =
-        || Designs::grid(&vary.iter().map(|v| Vary { over: Over::Values(vec![1.0]), ..v.clone() }).collect::<Vec<_>>());
+    names.retain(|name| !name.is_empty());
+    let named = || Designs::listed(names.clone(), &[vec![1.0; names.len()]]);
     let unmade = made.as_ref().err().cloned();
     let study = Study {
         robot,
@@ -115,6 +123,7 @@ fn asked(arguments: Arguments) -> anyhow::Result<Study> {
         gaits,
         criteria: criteria(&criterion),
         speeds: speed,
+        real_legs,
         search: Search { starts: starts.map(|n| n as usize), seed },
         beyond: Beyond::ALL.into_iter().filter(wanted).collect(),
     };
@@ -145,7 +154,10 @@ pub fn write(study: &Study, shard: Shard, answers: &Answers, rows: &[Row], path:
     let columns = Column::all(study);
     whole::write(&path.join("study.csv"), &table::csv(&columns, rows).context("cannot write the table")?)?;
     #[cfg(feature = "parquet")]
-    whole::write(&path.join("study.parquet"), &table::parquet(&columns, rows).context("cannot write the table")?)?;
+    whole::write(
+        &path.join("study.parquet"),
+        &piaffe_study::parquet(&columns, rows).context("cannot write the table")?,
+    )?;
     output::quiet_when_closed(tell(study, rows))?;
     output::say!("rows in {}", path.join("study.csv").display());
     if shard == Shard::WHOLE {
@@ -164,6 +176,7 @@ fn page(study: &Study, answers: &Answers, rows: &[Row], path: &Path) -> anyhow::
         criterion: row.criterion,
         speed: row.speed,
         costs: row.optimum.as_ref().map(|optimum| optimum.costs),
+        status: status(row),
     };
     let numbers = study.designs.names().to_vec();
     let space = Space { robot: study.robot.name().into(), numbers, spots: rows.iter().map(spot).collect() };
@@ -186,6 +199,15 @@ fn page(study: &Study, answers: &Answers, rows: &[Row], path: &Path) -> anyhow::
     let report = Report::new(records, Extremes::default(), None)?.of_space(space);
     output::say!("To be seen in {}", report::write_report(&report, path)?.display());
     Ok(())
+}
+
+/// What became of a point, in a few words.
+fn status(row: &Row) -> String {
+    let certificate = row.optimum.as_ref().and_then(|optimum| optimum.certificate);
+    match certificate {
+        Some(certificate) => format!("{}, {}", row.status.name(), certificate.name()),
+        None => row.status.name().into(),
+    }
 }
 
 /// What is best of each gait and criterion at each speed.

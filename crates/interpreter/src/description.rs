@@ -1,25 +1,14 @@
 //! A mechanism's numbers as values of the runtime's types: what a build writes as code.
 
+use super::derived::Derived;
 use super::kept::{kept, text};
-use super::shapes::Shapes;
-use piaffe_codegen::dynamics::Kernel;
 use piaffe_codegen::mechanism::{self, Mechanism, points};
-use piaffe_codegen::program::{Operations as Count, Program};
 use piaffe_codegen::spec;
-use piaffe_model::{
-    Body, Description, Joint, Leg, Limits, Member, Mode, Operations, Phase, Point, Rotation, Spot, Then, shape,
-};
+use piaffe_model::{Body, Description, Joint, Leg, Limits, Member, Mode, Phase, Point, Rotation, Spot, Then, shape};
 use std::borrow::Cow;
 
-/// The description of a gait with the name `key`. `lowest` tells which of the mechanism's points can be the lowest.
-pub fn description(
-    m: &Mechanism,
-    key: &str,
-    lowest: &[usize],
-    kernels: &[Kernel],
-    programs: &[(Program, Count)],
-) -> Description {
-    let shapes = Shapes::new(kernels);
+/// The description of a gait with the name `key`.
+pub fn description(m: &Mechanism, key: &str, derived: &Derived) -> Description {
     let mut description = Description {
         key: text(key),
         gait: text(&m.gait),
@@ -43,10 +32,10 @@ pub fn description(
         unactuated: m.unactuated,
         polynomial_order: m.polynomial_order,
         points: kept(points(m).iter().map(point).collect()),
-        lowest: kept(lowest.to_vec()),
+        lowest: kept(derived.lowest.clone()),
         limits: limits(&m.limits),
-        shapes: &kept(vec![shape::Shapes::named("", &|name| shapes.block(name))])[0],
-        operations: kept(kernels.iter().zip(programs).map(operations).collect()),
+        shapes: &kept(vec![shape::Shapes::named("", &|name| derived.shapes.block(name))])[0],
+        operations: derived.operations(),
     };
     // As code has them: zero without a sign.
     description.for_each_number(&mut |number| *number += 0.0);
@@ -130,10 +119,4 @@ fn limits(l: &spec::Limits) -> Limits {
         body_clearance: l.body_clearance,
         real_legs: false,
     }
-}
-
-/// There is no source: it has no length.
-fn operations((kernel, (program, derived)): (&Kernel, &(Program, Count))) -> Operations {
-    let Count { flops, divisions, sincos } = program.operations();
-    Operations { kernel: text(&kernel.name), flops, divisions, sincos, derived: derived.flops, bytes: 0 }
 }

@@ -4,14 +4,12 @@
 //! is a parameter, and numbers that are equal in all of them, or opposite, are one. Nothing is assumed of how the mechanism's numbers
 //! follow from the specification's: each member's are looked at, and one that is no member is derived by itself.
 
+use super::derived::Derived;
 use super::description::description;
 use super::gait::{Interpreted, Kernels, mechanism};
 use super::robot::{Robot, Unloadable};
 use super::tape::{Tape, Unrunnable};
-use super::twins::tapes;
-use piaffe_codegen::dynamics::{family_kernels, lowest};
 use piaffe_codegen::mechanism::{self, Mechanism, Parameter, Sign};
-use piaffe_codegen::program::{Program, programs};
 use piaffe_model::Description;
 
 /// A gait with symbols for what differs between its robots.
@@ -39,17 +37,9 @@ impl Family {
 
     fn of(samples: &[Mechanism], gait: &str, first: &Mechanism) -> Result<Family, Unrunnable> {
         let numbers = Numbers::new(&samples.iter().map(Mechanism::numbers).collect::<Vec<_>>());
-        let (mut model, derived) = family_kernels(&numbers.family(first));
-        let lowest = lowest(&mut model);
-        let programs = programs(&model.ring, &derived.gait);
-        let [_, lumps, _] = &derived.parameters;
-        Ok(Family {
-            gait: gait.into(),
-            description: description(first, gait, &lowest, &derived.gait, &programs),
-            lumps: Tape::new(lumps, &Program::new(&model.ring, lumps))?,
-            kernels: Kernels::new(tapes(&derived.gait, programs.iter().map(|(program, _)| program))?),
-            numbers,
-        })
+        let (derived, lumps) = Derived::of_family(&numbers.family(first))?;
+        let description = description(first, gait, &derived);
+        Ok(Family { gait: gait.into(), description, lumps, kernels: Kernels::new(derived.tapes), numbers })
     }
 
     /// The gait of a robot, with the numbers of [`Robot::gait`] but for rounding.
@@ -131,7 +121,7 @@ impl Numbers {
         };
         let count = self.parameters.len();
         mechanism::Family {
-            mechanism: mechanism.clone(),
+            mechanism: mechanism.unlimited(),
             parameters: self.parameters.iter().enumerate().map(parameter).collect(),
             base: self.all.iter().map(constant).collect(),
             slopes: (0..count).map(|p| self.all.iter().map(|number| slope(number, p)).collect()).collect(),

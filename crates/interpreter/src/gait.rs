@@ -1,13 +1,12 @@
 //! A gait that is evaluated as it was derived.
 
+use super::derived::Derived;
 use super::description::description;
-use super::kept::{kept, text};
+use super::kept::text;
 use super::tape::Unrunnable;
-use super::twins::{Twins, Which, tapes};
+use super::twins::{Twins, Which};
 use super::whole::Whole;
-use piaffe_codegen::dynamics::{kernels, lowest};
 use piaffe_codegen::mechanism::{Mechanism, levers};
-use piaffe_codegen::program::programs;
 use piaffe_codegen::spec;
 use piaffe_codegen::typeset::latex;
 use piaffe_model::{Description, Gait, Lever, Mode, Specification, whole};
@@ -16,16 +15,19 @@ use std::sync::OnceLock;
 /// A gait of a specification, derived when it was loaded: what a build would make of it, with the same bits.
 ///
 /// What only some ask for (the whole robot, the closed forms, what the numbers of the specification are to the gait's) is derived
-/// when it is asked for. What the traits give out for ever stays for as long as the program: a few kilobytes for each gait.
+/// when it is asked for. What its description gives out for ever stays for as long as the program: a few kilobytes for each gait, and
+/// nothing for each member of a family.
 pub struct Interpreted {
     robot: spec::Robot,
     gait: spec::Gait,
     specification: Specification,
     description: Description,
     kernels: Kernels,
-    whole: OnceLock<Option<&'static Whole>>,
-    latex: OnceLock<&'static str>,
-    levers: OnceLock<&'static [Lever]>,
+    /// Whether it is a member of a family.
+    of_many: bool,
+    whole: OnceLock<Option<Whole>>,
+    latex: OnceLock<String>,
+    levers: OnceLock<Vec<Lever>>,
 }
 
 impl Interpreted {
@@ -40,16 +42,15 @@ impl Interpreted {
         key: &str,
     ) -> Result<Interpreted, Unrunnable> {
         let mechanism = mechanism(robot, gait)?;
-        let (mut model, derived) = kernels(&mechanism);
-        let lowest = lowest(&mut model);
-        let programs = programs(&model.ring, &derived);
-        let description = description(&mechanism, key, &lowest, &derived, &programs);
-        let kernels = Kernels::new(tapes(&derived, programs.iter().map(|(program, _)| program))?);
-        Ok(Interpreted::of(robot, gait, specification, description, kernels))
+        let derived = Derived::of(&mechanism)?;
+        let description = description(&mechanism, key, &derived);
+        let kernels = Kernels::new(derived.tapes);
+        let interpreted = Interpreted::member(robot, gait, specification, description, kernels);
+        Ok(Interpreted { of_many: false, ..interpreted })
     }
 
-    /// The gait with this description and these kernels.
-    pub(crate) fn of(
+    /// The gait of a member of a family, with this description and these kernels.
+    pub(crate) fn member(
         robot: &spec::Robot,
         gait: &spec::Gait,
         specification: Specification,
@@ -62,6 +63,7 @@ impl Interpreted {
             specification,
             description,
             kernels,
+            of_many: true,
             whole: OnceLock::new(),
             latex: OnceLock::new(),
             levers: OnceLock::new(),
@@ -107,23 +109,20 @@ macro_rules! gait {
                 Some(&self.specification)
             }
 
-            fn levers(&self) -> &'static [Lever] {
-                self.levers.get_or_init(|| kept(levers(&self.robot, &self.gait).into_iter().map(lever).collect()))
+            fn levers(&self) -> &[Lever] {
+                self.levers.get_or_init(|| levers(&self.robot, &self.gait).into_iter().map(lever).collect())
             }
 
-            fn latex(&self) -> &'static str {
-                self.latex.get_or_init(|| match mechanism(&self.robot, &self.gait) {
-                    Ok(mechanism) => text(&latex(&self.robot, &self.gait, &mechanism)),
-                    Err(_) => "",
+            fn latex(&self) -> &str {
+                self.latex.get_or_init(|| {
+                    let mechanism = mechanism(&self.robot, &self.gait);
+                    mechanism.map_or(String::new(), |mechanism| latex(&self.robot, &self.gait, &mechanism))
                 })
             }
 
-            fn whole(&self) -> Option<&'static dyn whole::Whole> {
-                let whole = self.whole.get_or_init(|| {
-                    let whole = Whole::new(&locked(&self.robot, &self.gait).ok()?).ok()?;
-                    Some(&kept(vec![whole])[0])
-                });
-                whole.map(|whole| whole as &dyn whole::Whole)
+            fn whole(&self) -> Option<&dyn whole::Whole> {
+                let whole = self.whole.get_or_init(|| Whole::new(&locked(&self.robot, &self.gait).ok()?, self.of_many).ok());
+                whole.as_ref().map(|whole| whole as &dyn whole::Whole)
             }
 
             $(fn $name(&self, $($of: $ty,)? $($input: gait!(type $kind),)* out: &mut [f64]) {
@@ -178,9 +177,9 @@ gait! {
 fn lever(lever: piaffe_codegen::mechanism::Lever) -> Lever {
     Lever {
         name: text(&lever.name),
-        numbers: kept(lever.numbers.iter().map(|name| text(name)).collect()),
+        numbers: lever.numbers.iter().map(|name| text(name)).collect(),
         unit: lever.unit,
         value: lever.value + 0.0,
-        slopes: kept(lever.slopes),
+        slopes: lever.slopes.into(),
     }
 }

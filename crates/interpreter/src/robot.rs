@@ -106,6 +106,19 @@ impl Robot {
         self.specified.gaits.iter().map(|gait| self.key(&gait.name)).collect()
     }
 
+    /// Whether a gait leaves the ground, if there is one of this name.
+    pub fn flies(&self, name: &str) -> Option<bool> {
+        self.find(name).map(|(gait, _)| gait.phases.list.iter().any(|phase| phase.stance.is_none()))
+    }
+
+    /// The gaits that are meant where none is named: those that never leave the ground, whose searches are ten times as short; where all
+    /// fly, all.
+    pub fn usual_gaits(&self) -> Vec<String> {
+        let all = self.gaits();
+        let walks: Vec<String> = all.iter().filter(|gait| self.flies(gait) == Some(false)).cloned().collect();
+        if walks.is_empty() { all } else { walks }
+    }
+
     /// How many phases a gait lists, if there is one of this name.
     pub fn phases(&self, name: &str) -> Option<usize> {
         self.find(name).map(|(gait, _)| gait.phases.list.len())
@@ -145,7 +158,7 @@ impl Robot {
         kernels: Kernels,
     ) -> Result<Interpreted, Unloadable> {
         let (gait, specification) = (self.specified_gait(name)?, self.known_specification(name)?);
-        Ok(Interpreted::of(&self.specified.robot, gait, specification, description, kernels))
+        Ok(Interpreted::member(&self.specified.robot, gait, specification, description, kernels))
     }
 
     pub(crate) fn specified(&self) -> &spec::Robot {

@@ -3,11 +3,15 @@
 use piaffe_codegen::dynamics::{Block, Kernel};
 use piaffe_codegen::mechanism::Mode;
 use piaffe_model::shape;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Blocks by the names under which the runtime's shapes ask for them: `curvature.gradient`, `curvature.n.torque`.
-#[derive(Default)]
-pub struct Shapes(BTreeMap<String, shape::Block>);
+#[derive(Default, Serialize, Deserialize)]
+pub struct Shapes(BTreeMap<String, Place>);
+
+/// Where a block begins, its rows and its columns.
+type Place = [usize; 3];
 
 impl Shapes {
     /// Of kernels that give several things or take weights of several kinds, as a build has them. Twins have the same.
@@ -33,10 +37,10 @@ impl Shapes {
         let mut at = 0;
         for block in blocks {
             let (rows, columns) = block.shape.size();
-            let place = self.0.entry(format!("{path}.{}", block.name)).or_insert(shape::Block::NONE);
+            let place = self.0.entry(format!("{path}.{}", block.name)).or_default();
             // Of twins the longer one counts: what is known early can be more for one leg than for the other.
-            if place.len() <= rows * columns {
-                *place = shape::Block::new(at, rows, columns);
+            if place[1] * place[2] <= rows * columns {
+                *place = [at, rows, columns];
             }
             at += block.count();
         }
@@ -44,6 +48,6 @@ impl Shapes {
 
     /// Nothing where the gait has no such block.
     pub fn block(&self, name: &str) -> shape::Block {
-        self.0.get(name).copied().unwrap_or(shape::Block::NONE)
+        self.0.get(name).map_or(shape::Block::NONE, |[at, rows, columns]| shape::Block::new(*at, *rows, *columns))
     }
 }

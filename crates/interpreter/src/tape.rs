@@ -5,6 +5,7 @@
 
 use piaffe_codegen::dynamics::Kernel;
 use piaffe_codegen::program::{Id, Node, Program, Step, Term, math, terms};
+use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, btree_map};
 use std::sync::Arc;
@@ -16,7 +17,7 @@ type Cell = u16;
 type Cells = [f64; 1 << 16];
 
 /// Works on a sum, a product and cells.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 enum Operation {
     /// The sum begins with a cell, or with a product of cells.
     Set(Cell),
@@ -44,7 +45,7 @@ enum Operation {
 }
 
 /// A kernel that can be evaluated.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Tape {
     constants: Vec<f64>,
     /// Length of each input.

@@ -5,10 +5,11 @@ use piaffe_codegen::dynamics::Kernel;
 use piaffe_codegen::mechanism;
 use piaffe_codegen::program::Program;
 use piaffe_model::Mode;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// The tapes of a kernel for leg 1 and 2 or stance on these, and for flight; or the one that is of none, as the first.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Twins([Option<Tape>; 3]);
 
 /// Which of the tapes is that of a leg or a mode.

@@ -1,32 +1,27 @@
 //! The whole robot that the virtual legs stand for.
 
+use super::derived::DerivedWhole;
 use super::description::body;
-use super::kept::{kept, text};
-use super::shapes::Shapes;
+use super::kept::text;
 use super::tape::Unrunnable;
-use super::twins::{Twins, tapes};
-use piaffe_codegen::dynamics::whole_kernels;
+use super::twins::Twins;
 use piaffe_codegen::mechanism;
-use piaffe_codegen::program::Program;
 use piaffe_codegen::spec::Robot;
 use piaffe_model::whole::{self, Description, Joint, Leg};
 
 pub struct Whole {
-    description: &'static Description,
+    description: Description,
     inertia_and_bias: Twins,
     feet: Twins,
     feet_bias: Twins,
 }
 
 impl Whole {
-    /// Of a robot whose locked joints are gone.
-    pub fn new(robot: &Robot) -> Result<Whole, Unrunnable> {
+    /// Of a robot whose locked joints are gone. One of many robots is not asked about again: what is derived of it is not kept.
+    pub fn new(robot: &Robot, of_many: bool) -> Result<Whole, Unrunnable> {
         let whole = mechanism::Whole::new(robot);
-        let (ring, kernels) = whole_kernels(&whole);
-        let shapes = Shapes::new(&kernels);
-        // On one thread: whoever asks first may be one of many, all of whom wait for this.
-        let programs: Vec<Program> = kernels.iter().map(|kernel| Program::new(&ring, kernel)).collect();
-        let mut tapes = tapes(&kernels, &programs)?;
+        let derived = if of_many { DerivedWhole::derive(&whole) } else { DerivedWhole::of(&whole) };
+        let DerivedWhole { shapes, mut tapes } = derived?;
         let mut tape = |name| tapes.remove(name).unwrap_or_default();
         let joint = |j: &mechanism::WholeJoint| Joint { name: text(&j.name), rotor_inertia: j.rotor_inertia };
         let leg = |l: &mechanism::WholeLeg| Leg {
@@ -36,14 +31,14 @@ impl Whole {
             foot: l.foot.map(|x| x + 0.0),
         };
         Ok(Whole {
-            description: &kept(vec![Description {
+            description: Description {
                 robot: text(&whole.robot),
                 gravity: whole.gravity,
-                bodies: kept(whole.bodies.iter().map(body).collect()),
-                joints: kept(whole.joints.iter().map(joint).collect()),
-                legs: kept(whole.legs.iter().map(leg).collect()),
-                shapes: &kept(vec![whole::Shapes::named("", &|name| shapes.block(name))])[0],
-            }])[0],
+                bodies: whole.bodies.iter().map(body).collect(),
+                joints: whole.joints.iter().map(joint).collect(),
+                legs: whole.legs.iter().map(leg).collect(),
+                shapes: whole::Shapes::named("", &|name| shapes.block(name)),
+            },
             inertia_and_bias: tape("inertia_and_bias"),
             feet: tape("feet"),
             feet_bias: tape("feet_bias"),
@@ -52,8 +47,8 @@ impl Whole {
 }
 
 impl whole::Whole for Whole {
-    fn description(&self) -> &'static Description {
-        self.description
+    fn description(&self) -> &Description {
+        &self.description
     }
 
     fn inertia_and_bias(&self, up: &[f64], omega: &[f64], q: &[f64], qd: &[f64], out: &mut [f64]) {

@@ -464,13 +464,13 @@ pub trait Gait: Sync {
         None
     }
     /// The numbers of the specification on which the gait depends; of families none, since they have parameters.
-    fn levers(&self) -> &'static [Lever] {
+    fn levers(&self) -> &[Lever] {
         &[]
     }
     /// The closed forms of eq. 2–5, 8 and 9 with the names of the robot's parameters: a LaTeX document.
-    fn latex(&self) -> &'static str;
+    fn latex(&self) -> &str;
     /// The real robot that the virtual legs stand for. Members of families have none: it is generated with numbers.
-    fn whole(&self) -> Option<&'static dyn whole::Whole> {
+    fn whole(&self) -> Option<&dyn whole::Whole> {
         None
     }
 

@@ -1,22 +1,23 @@
 //! The numbers of a description in one fixed order, and how they follow from those of the specification.
 
 use super::{Body, Description};
+use std::borrow::Cow;
 
 /// Numbers of the specification that change together: something that can be changed on the robot, or in what is asked of it.
 ///
 /// Legs that the gait moves as one or that mirror each other must stay alike, so that what they have in the same place changes by the same
 /// share.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Lever {
     /// Where they stand in the specification, what differs in braces: `links.{left_shin,right_shin}.mass`.
     pub name: &'static str,
     /// Where each stands, such as `links.left_shin.mass`.
-    pub numbers: &'static [&'static str],
+    pub numbers: Cow<'static, [&'static str]>,
     pub unit: &'static str,
     /// Of the first that is not zero.
     pub value: f64,
     /// Which of [`Description::numbers`] change with it, and by how much per unit.
-    pub slopes: &'static [(usize, f64)],
+    pub slopes: Cow<'static, [(usize, f64)]>,
 }
 
 impl Description {

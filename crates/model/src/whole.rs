@@ -12,6 +12,7 @@
 //! are needed, and there is none that is singular. Forces are in N in the platform's axes too.
 
 use super::{Body, shape};
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// What a whole robot is made of, in numbers.
@@ -21,11 +22,11 @@ pub struct Description {
     /// m/s².
     pub gravity: f64,
     /// Parents precede children; body 0 is the platform.
-    pub bodies: &'static [Body],
-    pub joints: &'static [Joint],
-    pub legs: &'static [Leg],
+    pub bodies: Cow<'static, [Body]>,
+    pub joints: Cow<'static, [Joint]>,
+    pub legs: Cow<'static, [Leg]>,
     /// Where everything stands in what the kernels give.
-    pub shapes: &'static Shapes,
+    pub shapes: Shapes,
 }
 
 shape::all! {
@@ -72,7 +73,7 @@ impl Description {
 /// Generated dynamics of a whole robot. Outputs go one after another and row-major into `out`, as those of
 /// [`Gait`](super::Gait).
 pub trait Whole: Sync {
-    fn description(&self) -> &'static Description;
+    fn description(&self) -> &Description;
     /// A (n × n for n speeds), then H. `up` and `omega` (rad/s) are in the platform's axes.
     fn inertia_and_bias(&self, up: &[f64], omega: &[f64], q: &[f64], qd: &[f64], out: &mut [f64]);
     /// Feet from the platform's mass centre (3 per leg), then D (n × 3 per leg); platform's axes.

@@ -65,15 +65,15 @@ impl Gait for Altered<'_> {
     }
 
     /// Of other limits than the specification's none is known.
-    fn levers(&self) -> &'static [Lever] {
+    fn levers(&self) -> &[Lever] {
         if self.description.numbers() == self.gait.description().numbers() { self.gait.levers() } else { &[] }
     }
 
-    fn latex(&self) -> &'static str {
+    fn latex(&self) -> &str {
         self.gait.latex()
     }
 
-    fn whole(&self) -> Option<&'static dyn Whole> {
+    fn whole(&self) -> Option<&dyn Whole> {
         self.gait.whole()
     }
 

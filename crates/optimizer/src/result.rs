@@ -54,6 +54,18 @@ pub enum Status {
     ReceiptFailed,
 }
 
+impl Status {
+    /// As files have it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Status::Optimal => "optimal",
+            Status::Infeasible => "infeasible",
+            Status::NotConverged => "not-converged",
+            Status::ReceiptFailed => "receipt-failed",
+        }
+    }
+}
+
 /// What was asked and what was found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GaitResult {

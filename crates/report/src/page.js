@@ -19,6 +19,27 @@ const digits = x => {
 
 const tip = document.getElementById("tip");
 
+/** Tells some rows, each with an ink or none, beside a place of the window. */
+const tell = (rows, x, y) => {
+  tip.replaceChildren(...rows.map(([ink, text]) => {
+    const row = document.createElement("div");
+    if (ink) row.append(Object.assign(document.createElement("i"), { style: `background:var(--${ink})` }));
+    row.append(text);
+    return row;
+  }));
+  tip.hidden = rows.length === 0;
+  const right = x + 16 + tip.offsetWidth > innerWidth;
+  tip.style.left = `${Math.max(4, right ? x - 16 - tip.offsetWidth : x + 16)}px`;
+  tip.style.top = `${clamp(y - 12, 4, innerHeight - tip.offsetHeight - 4)}px`;
+};
+
+/** Where the pointer is in a drawing. */
+const within = (svg, event) => {
+  const box = svg.getBoundingClientRect();
+  const factor = svg.viewBox.baseVal.width / box.width;
+  return [(event.clientX - box.left) * factor, (event.clientY - box.top) * factor];
+};
+
 /** A drawn plot: tells values, and has a cursor where its first axis is time. */
 class Plot {
   constructor(element, data, onTime) {
@@ -57,9 +78,7 @@ class Plot {
 
   /** Where the pointer is, in the drawing and on the first axis (at a point of the curves, if these run along it); nothing outside of the axes. */
   under(event) {
-    const box = this.svg.getBoundingClientRect();
-    const factor = this.svg.viewBox.baseVal.width / box.width;
-    const x = (event.clientX - box.left) * factor, y = (event.clientY - box.top) * factor;
+    const [x, y] = within(this.svg, event);
     const { domain: [a, b], range: [from, to] } = this.data.x;
     if (x < from - 8 || x > to + 8) return null;
     const value = clamp(a + (x - from) / (to - from) * (b - a), a, b);
@@ -103,16 +122,7 @@ class Plot {
       this.hair.setAttribute("x2", x);
       rows.unshift([null, `${axis.name} ${digits(at.value)} ${axis.unit}`]);
     }
-    tip.replaceChildren(...rows.map(([ink, text]) => {
-      const row = document.createElement("div");
-      if (ink) row.append(Object.assign(document.createElement("i"), { style: `background:var(--${ink})` }));
-      row.append(text);
-      return row;
-    }));
-    tip.hidden = rows.length === 0;
-    const right = event.clientX + 16 + tip.offsetWidth > innerWidth;
-    tip.style.left = `${Math.max(4, right ? event.clientX - 16 - tip.offsetWidth : event.clientX + 16)}px`;
-    tip.style.top = `${clamp(event.clientY - 12, 4, innerHeight - tip.offsetHeight - 4)}px`;
+    tell(rows, event.clientX, event.clientY);
   }
 
   leave() {
@@ -125,6 +135,202 @@ class Plot {
     this.cursor.setAttribute("x1", x);
     this.cursor.setAttribute("x2", x);
     this.cursor.setAttribute("visibility", "visible");
+  }
+}
+
+// -------------------------------------------------------------------------------------------------- study
+
+/** Farther from the pointer than this, in the drawing, nothing is meant. */
+const NEAR = 14;
+/** Who moves less does not drag. */
+const CLICK = 3;
+
+const distance = ([x, y], [ax, ay], [bx, by]) => {
+  const [dx, dy] = [bx - ax, by - ay], length = dx * dx + dy * dy;
+  const w = length > 0 ? clamp(((x - ax) * dx + (y - ay) * dy) / length, 0, 1) : 0;
+  return Math.hypot(ax + w * dx - x, ay + w * dy - y);
+};
+
+/** The robots of a study: every line and every dot is one, told under the pointer and by keys; ranges of axes select some. */
+class Space {
+  constructor(section, space, figures, of) {
+    this.numbers = space.numbers;
+    this.units = space.units;
+    this.all = space.designs;
+    this.spots = space.spots.map(([design, gait, criterion, speed, costs, status, numbers]) =>
+      ({ design, gait, criterion, speed, costs, status, numbers, marks: [] }));
+    this.brushes = new Map();
+    this.figures = [];
+    for (const element of section.querySelectorAll("figure")) {
+      if (element.querySelector("[data-k]")) this.figures.push(this.figure(element, figures[element.dataset.figure.slice(of.length + 1)]));
+    }
+    this.bar(section);
+    this.select();
+  }
+
+  /** What is selected, in words, before the first figure. */
+  bar(section) {
+    const first = section.querySelector(".gallery"), bar = document.createElement("p");
+    bar.className = "selection";
+    this.words = document.createElement("output");
+    this.words.setAttribute("role", "status");
+    this.clear = Object.assign(document.createElement("button"), { type: "button", textContent: "Clear" });
+    this.clear.addEventListener("click", () => { this.brushes.clear(); this.select(); });
+    const note = Object.assign(document.createElement("span"), { className: "note" });
+    note.textContent = "Drag along an axis to select, click it to let go. Point at a line or a dot, or use the arrow keys, to read a robot.";
+    bar.append(this.words, this.clear, note);
+    first.before(bar);
+  }
+
+  figure(element, data) {
+    const svg = element.querySelector("svg"), figure = { svg, spots: [], axes: data?.axes ?? [], copies: [], at: -1 };
+    element.dataset.live = "";
+    svg.setAttribute("tabindex", "0");
+    for (const mark of svg.querySelectorAll("[data-k]")) {
+      const spot = this.spots[mark.dataset.k];
+      const points = mark.tagName === "circle"
+        ? [[+mark.getAttribute("cx"), +mark.getAttribute("cy")]]
+        : mark.getAttribute("d").slice(1).split("L").map(p => p.split(" ").map(Number));
+      spot.marks.push({ figure, mark });
+      figure.spots.push({ spot, points, mark });
+    }
+    // Keys lead from the best to the worst.
+    figure.spots.sort((a, b) => this.cost(a.spot) - this.cost(b.spot));
+    for (const axis of figure.axes) this.axis(figure, axis);
+    svg.addEventListener("pointermove", e => {
+      if (figure.dragged) return;
+      const [least, found] = this.nearest(figure, within(svg, e));
+      if (least <= NEAR) this.show(found.spot, e.clientX, e.clientY); else this.hide();
+    });
+    svg.addEventListener("pointerleave", () => { if (!figure.dragged) this.hide(); });
+    svg.addEventListener("focus", () => { if (svg.matches(":focus-visible")) this.step(figure, 0); });
+    svg.addEventListener("blur", () => this.hide());
+    svg.addEventListener("keydown", e => {
+      const steps = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1, Home: -Infinity, End: Infinity };
+      if (e.key in steps) { e.preventDefault(); this.step(figure, steps[e.key]); }
+      if (e.key === "Escape") this.hide();
+    });
+    return figure;
+  }
+
+  /** An axis along which a range is dragged. */
+  axis(figure, axis) {
+    const [bottom, top] = axis.range, [a, b] = axis.domain;
+    const value = y => a + (clamp(y, top, bottom) - bottom) / (top - bottom) * (b - a);
+    axis.place = v => bottom + (v - a) / (b - a) * (top - bottom);
+    axis.brush = node("rect", { class: "brush", x: axis.x - 7, width: 14, visibility: "hidden" }, figure.svg);
+    const grip = node("rect", { class: "grip", x: axis.x - 12, width: 24, y: top - 6, height: bottom - top + 12, "data-axis": axis.key }, figure.svg);
+    grip.addEventListener("pointerdown", e => {
+      e.preventDefault();
+      grip.setPointerCapture(e.pointerId);
+      figure.dragged = { from: value(within(figure.svg, e)[1]), moved: false };
+      this.hide();
+    });
+    grip.addEventListener("pointermove", e => {
+      if (!figure.dragged) return;
+      const to = value(within(figure.svg, e)[1]), range = [figure.dragged.from, to].sort((p, q) => p - q);
+      figure.dragged.moved ||= Math.abs(axis.place(range[1]) - axis.place(range[0])) > CLICK;
+      if (!figure.dragged.moved) return;
+      this.brushes.set(axis.key, { axis, range });
+      this.select();
+      tell([[null, `${axis.name}: ${digits(range[0])} to ${digits(range[1])}`]], e.clientX, e.clientY);
+    });
+    const end = () => {
+      if (!figure.dragged) return;
+      if (!figure.dragged.moved) this.brushes.delete(axis.key);
+      figure.dragged = null;
+      tip.hidden = true;
+      this.select();
+    };
+    grip.addEventListener("pointerup", end);
+    grip.addEventListener("pointercancel", end);
+  }
+
+  cost(spot) {
+    return spot.costs[spot.criterion === "energy" ? 0 : 1];
+  }
+
+  nearest(figure, at) {
+    let least = Infinity, found = null;
+    for (const entry of figure.spots) {
+      if (entry.spot.faded) continue;
+      const { points } = entry;
+      let d = points.length === 1 ? Math.hypot(points[0][0] - at[0], points[0][1] - at[1]) : Infinity;
+      for (let k = 1; k < points.length; k++) d = Math.min(d, distance(at, points[k - 1], points[k]));
+      if (d < least) { least = d; found = entry; }
+    }
+    return [least, found];
+  }
+
+  /** By keys to the next of those that are selected. */
+  step(figure, by) {
+    const open = figure.spots.filter(({ spot }) => !spot.faded);
+    if (open.length === 0) return this.hide();
+    figure.at = clamp(figure.at + by, 0, open.length - 1);
+    const { spot, mark } = open[figure.at], box = mark.getBoundingClientRect();
+    this.show(spot, box.right, box.top);
+  }
+
+  show(spot, x, y) {
+    this.hide();
+    const { design, gait, criterion, speed, costs, status, numbers } = spot;
+    tell([
+      [null, `Design ${design}: ${gait.replaceAll("_", " ")}, least ${criterion} at ${digits(speed)} m/s`],
+      ...numbers.map((value, k) => [null, `${this.numbers[k]} = ${digits(value)}`]),
+      ...["energy", "torque"].map((name, k) => [null, `${name} ${digits(costs[k])} ${this.units[k]}`]),
+      [null, status],
+    ], x, y);
+    // On top of all others, in every figure.
+    for (const { figure, mark } of spot.marks) {
+      const copy = mark.cloneNode();
+      copy.removeAttribute("data-k");
+      copy.classList.remove("faded");
+      copy.classList.add("hot");
+      figure.svg.append(copy);
+      figure.copies.push(copy);
+    }
+  }
+
+  hide() {
+    tip.hidden = true;
+    for (const figure of this.figures) {
+      for (const copy of figure.copies) copy.remove();
+      figure.copies = [];
+    }
+  }
+
+  /** Fades what is outside of a range. A range of costs is one of robots: it holds for their other questions too. */
+  select() {
+    const has = (spot, { axis, range: [from, to] }) => {
+      const value = axis.key === "speed" ? spot.speed : axis.name === "cost" ? this.cost(spot) : spot.numbers[axis.key];
+      return value >= from && value <= to;
+    };
+    const isOf = (spot, { axis }) => axis.name !== "cost" || axis.key === `cost ${spot.gait} ${spot.criterion}`;
+    const brushes = [...this.brushes.values()];
+    const robots = brushes.map(brush => new Set(this.spots.filter(spot => isOf(spot, brush) && has(spot, brush)).map(spot => spot.design)));
+    for (const spot of this.spots) {
+      spot.faded = !brushes.every((brush, k) => isOf(spot, brush) ? has(spot, brush) : robots[k].has(spot.design));
+      for (const { mark } of spot.marks) mark.classList.toggle("faded", spot.faded);
+    }
+    for (const { axes } of this.figures) for (const axis of axes) {
+      const brush = this.brushes.get(axis.key);
+      axis.brush.setAttribute("visibility", brush ? "visible" : "hidden");
+      if (!brush) continue;
+      const [y, end] = [axis.place(brush.range[1]), axis.place(brush.range[0])];
+      axis.brush.setAttribute("y", y);
+      axis.brush.setAttribute("height", Math.max(end - y, 1));
+    }
+    const count = spots => new Set(spots.map(spot => spot.design)).size;
+    const drawn = count(this.spots), open = this.spots.filter(spot => !spot.faded);
+    const of = drawn < this.all ? ` drawn, of ${this.all} asked about` : "";
+    this.words.value = brushes.length === 0
+      ? `${drawn} robots with an optimum${of}`
+      : `${count(open)} of ${drawn} robots selected, ${open.length} of ${this.spots.length} optima`;
+    this.clear.hidden = brushes.length === 0;
+    for (const figure of this.figures) {
+      figure.at = -1;
+      figure.svg.classList.toggle("chosen", brushes.length > 0);
+    }
   }
 }
 
@@ -360,8 +566,12 @@ class Player {
 }
 
 for (const script of document.querySelectorAll("script[data-of]")) {
-  const { walk, figures } = JSON.parse(script.textContent);
+  const { walk, space, figures } = JSON.parse(script.textContent);
   const section = script.closest("section");
+  if (space) {
+    new Space(section, space, figures, script.dataset.of);
+    continue;
+  }
   const player = walk ? new Player(section, walk) : null;
   for (const name in figures) {
     const element = section.querySelector(`[data-figure="${script.dataset.of}/${name}"]`);

@@ -43,7 +43,7 @@ pub fn page(report: &Report) -> String {
                     "Every number is that of the result files. Equations and figures are numbered as in Muraro, Chevallereau and Aoustin, "
                     i { "Multibody System Dynamics" } " 9(1), 2003. Made by piaffe " (env!("CARGO_PKG_VERSION")) "."
                 }
-                div #tip hidden {}
+                div #tip role="status" hidden {}
                 script { (PreEscaped(include_str!("page.js"))) }
             }
         }
@@ -181,6 +181,7 @@ fn of_space(space: &Space, figures: &[Figure]) -> Markup {
             div.gallery { @for f in figures.iter().filter(|f| f.wide == wide) { (drawing("overview", f)) } }
         }
         ul { @for robot in space.shown() { li { (robot) "." } } }
+        (script("overview", json!({ "space": space.data(), "figures": interactive(figures) })))
     }
 }
 

@@ -37,6 +37,8 @@ pub struct Curve {
     pub ink: Ink,
     pub dash: Dash,
     pub segments: Vec<Vec<Xy>>,
+    /// Of each segment the number of what it stands for, where it stands for something.
+    pub numbers: Vec<usize>,
     /// Whether each point is marked.
     pub dots: bool,
     /// Ends of segments between which the quantity jumps: ringed.
@@ -103,7 +105,8 @@ impl Axis {
 
 impl Curve {
     pub fn new(name: impl Into<String>, ink: Ink, segments: Vec<Vec<Xy>>) -> Curve {
-        Curve { name: name.into(), ink, dash: Dash::Solid, segments, dots: false, jumps: Vec::new(), width: 1.8 }
+        let (name, numbers, jumps) = (name.into(), Vec::new(), Vec::new());
+        Curve { name, ink, dash: Dash::Solid, segments, numbers, dots: false, jumps, width: 1.8 }
     }
 
     pub fn dash(self, dash: Dash) -> Curve {
@@ -221,11 +224,12 @@ impl Plot {
             draw_limit(&mut scene, limit, [x, y], &mut named);
         }
         for curve in &self.curves {
-            for segment in &curve.segments {
+            for (k, segment) in curve.segments.iter().enumerate() {
                 let points: Vec<Xy> = segment.iter().map(place).collect();
                 scene.line(&points, Pen::new(curve.ink, curve.width).dash(curve.dash));
                 for at in points.iter().filter(|_| curve.dots) {
                     scene.dot(*at, 2.4, curve.ink);
+                    curve.numbers.get(k).into_iter().for_each(|number| scene.number(*number));
                 }
             }
             for jump in &curve.jumps {

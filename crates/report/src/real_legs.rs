@@ -27,7 +27,7 @@ fn over_time(lift: &Lift, phase: usize, value: impl Fn(&Instant) -> f64) -> Vec<
 
 /// A curve for every foot in each phase in which it stands.
 fn of_feet(lift: &Lift, value: impl Fn(&Instant, usize) -> f64) -> Vec<Curve> {
-    let names = lift.legs.whole.description().legs;
+    let names = &lift.legs.whole.description().legs;
     let mut curves = Vec::new();
     for phase in 0..lift.durations.len() {
         let Some(first) = lift.instants.iter().find(|i| i.phase == phase) else { continue };

@@ -2,6 +2,7 @@
 
 use super::font::Weight;
 use super::ink::Ink;
+use std::collections::BTreeMap;
 
 pub type Xy = [f64; 2];
 
@@ -10,6 +11,8 @@ pub struct Scene {
     pub width: f64,
     pub height: f64,
     pub marks: Vec<Mark>,
+    /// Of some marks, by their places, the number of what they stand for: a page brings them to life.
+    pub numbers: BTreeMap<usize, usize>,
 }
 
 #[derive(Clone, Debug)]
@@ -75,7 +78,12 @@ impl Pen {
 
 impl Scene {
     pub fn new(width: f64, height: f64) -> Scene {
-        Scene { width, height, marks: Vec::new() }
+        Scene { width, height, marks: Vec::new(), numbers: BTreeMap::new() }
+    }
+
+    /// The last mark stands for what has this number.
+    pub fn number(&mut self, number: usize) {
+        self.numbers.extend(self.marks.len().checked_sub(1).map(|last| (last, number)));
     }
 
     pub fn line(&mut self, points: &[Xy], pen: Pen) {

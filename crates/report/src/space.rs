@@ -4,14 +4,16 @@ use super::figure::Figure;
 use super::font::Weight;
 use super::ink::Ink;
 use super::number::significant;
-use super::plot::{Axis, Curve, Plot};
+use super::plot::{Axis, Curve, Plot, rounded};
 use super::scale::{Scale, domain};
 use super::scene::{Anchor, Pen, Scene, Xy};
 use super::subject::spaced;
 use piaffe_model::motion::{Costs, Criterion};
+use serde_json::{Value, json};
+use std::collections::{BTreeMap, BTreeSet};
 
-/// Lines that a drawing has; more show nothing more.
-const LINES: usize = 1500;
+/// Robots that are drawn; more show nothing more.
+const DRAWN: usize = 1500;
 
 /// The share of the robots whose lines stand out.
 const BEST: f64 = 0.05;
@@ -40,6 +42,8 @@ pub struct Spot {
     pub speed: f64,
     /// Of its optimum, if there is one.
     pub costs: Option<Costs>,
+    /// What became of the question, in a few words.
+    pub status: String,
 }
 
 impl Spot {
@@ -58,6 +62,15 @@ enum Across {
 }
 
 impl Across {
+    /// Tells it from others, whichever figure it is in; costs are of a gait's criterion.
+    fn key(self, first: &Spot) -> String {
+        match self {
+            Across::Number(k) => k.to_string(),
+            Across::Speed => "speed".into(),
+            Across::Cost => format!("cost {} {}", first.gait, first.criterion.name()),
+        }
+    }
+
     /// Where a spot is on it.
     fn value(self, spot: &Spot) -> Option<f64> {
         match self {
@@ -94,10 +107,38 @@ impl Space {
         for group in self.groups(|spot| (&spot.gait, spot.speed)) {
             points.extend(front(&group, both).into_iter().map(|(spot, _)| spot.point));
         }
-        let mut known = std::collections::BTreeSet::new();
+        let mut known = BTreeSet::new();
         points.retain(|point| known.insert(*point));
         points.truncate(WALKS);
         points
+    }
+
+    /// How many robots stand between one that is drawn and the next, and the answers of those that are.
+    fn drawn(&self) -> (usize, Vec<&Spot>) {
+        let every = self.designs().div_ceil(DRAWN).max(1);
+        let shown: BTreeSet<usize> = self.worth_showing().into_iter().collect();
+        let of_shown: BTreeSet<usize> =
+            self.spots.iter().filter(|spot| shown.contains(&spot.point)).map(|spot| spot.design).collect();
+        let is_drawn = |spot: &&Spot| {
+            spot.costs.is_some() && (spot.design.is_multiple_of(every) || of_shown.contains(&spot.design))
+        };
+        (every, self.spots.iter().filter(is_drawn).collect())
+    }
+
+    /// What a page needs to bring the figures to life: the answers in the order of their numbers there. Costs are energy and torque.
+    pub(super) fn data(&self) -> Value {
+        let spot = |spot: &Spot| {
+            let costs = spot.costs.map(|costs| [costs.energy, costs.torque].map(rounded));
+            let (numbers, criterion) = (spot.numbers.iter().map(|n| rounded(*n)).collect::<Vec<_>>(), spot.criterion);
+            json!([spot.design, spot.gait, criterion.name(), spot.speed, costs, spot.status, numbers])
+        };
+        let (_, drawn) = self.drawn();
+        json!({
+            "numbers": self.numbers,
+            "units": Criterion::ALL.map(Criterion::unit),
+            "designs": self.designs(),
+            "spots": drawn.into_iter().map(spot).collect::<Vec<_>>(),
+        })
     }
 
     /// The robots whose walks are worth showing, each with its numbers.
@@ -124,15 +165,17 @@ impl Space {
     /// All figures, in the order in which they are read.
     pub fn figures(&self) -> Vec<Figure> {
         let mut figures = Vec::new();
+        let (every, drawn) = self.drawn();
+        let drawn = Drawn { every, numbers: drawn.iter().enumerate().map(|(k, spot)| (spot.point, k)).collect() };
         for group in self.groups(|spot| (&spot.gait, spot.criterion)) {
-            figures.extend(self.parallel(&group));
+            figures.extend(self.parallel(&group, &drawn));
         }
         for group in self.groups(|spot| (&spot.gait, spot.speed)) {
-            figures.extend(self.fronts(&group));
+            figures.extend(self.fronts(&group, &drawn));
         }
         for group in self.groups(|spot| (&spot.gait, spot.criterion, spot.speed)) {
             for k in 0..self.numbers.len() {
-                figures.extend(self.over(k, &group));
+                figures.extend(self.over(k, &group, &drawn));
             }
         }
         figures
@@ -152,7 +195,7 @@ impl Space {
     }
 
     /// Parallel coordinates: a line for each robot across the varied numbers, the speed and the cost.
-    fn parallel(&self, group: &[&Spot]) -> Option<Figure> {
+    fn parallel(&self, group: &[&Spot], drawn: &Drawn) -> Option<Figure> {
         let first = group.first()?;
         let mut axes: Vec<Across> = (0..self.numbers.len()).map(Across::Number).chain([Across::Speed]).collect();
         // What is the same for all says nothing.
@@ -169,7 +212,6 @@ impl Space {
         let cost = |spot: &Spot| spot.cost().unwrap_or(f64::INFINITY);
         optimal.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
         let best = ((optimal.len() as f64 * BEST).ceil() as usize).max(1);
-        let every = optimal.len().div_ceil(LINES);
         let (left, right, top, bottom) = (64.0, 736.0, 52.0, 262.0);
         let scale = |axis: &Across| {
             let domain = domain(optimal.iter().filter_map(|spot| axis.value(spot)));
@@ -181,11 +223,13 @@ impl Space {
         let title = format!("{}, least {}", spaced(&first.gait), first.criterion.name());
         scene.write([4.0, 15.0], &title, 13.0, Weight::Bold, Anchor::Start, Ink::Text);
         // The best last, on top.
-        for (k, spot) in optimal.iter().enumerate().rev().filter(|(k, _)| *k < best || k % every == 0) {
+        for (k, spot) in optimal.iter().enumerate().rev() {
+            let Some(number) = drawn.numbers.get(&spot.point) else { continue };
             let place = |(j, axis): (usize, &Across)| Some([x(j), scales[j].at(axis.value(spot)?)]);
             let points: Option<Vec<Xy>> = axes.iter().enumerate().map(place).collect();
             let pen = if k < best { Pen::new(Ink::gait(0), 1.4) } else { Pen::new(Ink::Muted, 0.7).opacity(0.25) };
             scene.line(&points?, pen);
+            scene.number(*number);
         }
         for (k, (axis, scale)) in axes.iter().zip(&scales).enumerate() {
             scene.line(&[[x(k), top], [x(k), bottom]], Pen::new(Ink::Axis, 1.0));
@@ -205,14 +249,26 @@ impl Space {
             scene.quantity([x(k), row], words, ticks.power, 10.0, Anchor::Middle, Ink::Text);
         }
         let name = format!("parallel-{}-{}", first.gait.replace('/', "-"), first.criterion.name());
-        let some = if every > 1 { format!(" Every {every}th of the others is drawn.") } else { String::new() };
+        let some = match drawn.every {
+            1 => String::new(),
+            every => format!(" Drawn: one in {every}, and those whose walks are shown."),
+        };
         let caption =
             format!("A line for each robot with an optimum. In colour: the best {best} of {}.{some}", optimal.len());
-        Some(Figure::drawing(&name, &title, scene, caption))
+        let axis = |(k, (axis, scale)): (usize, (&Across, &Scale))| {
+            let what = match axis {
+                Across::Number(k) => self.numbers[*k].as_str(),
+                Across::Speed => "speed",
+                Across::Cost => "cost",
+            };
+            json!({ "key": axis.key(first), "name": what, "x": x(k), "domain": scale.domain, "range": scale.range })
+        };
+        let axes: Vec<Value> = axes.iter().zip(&scales).enumerate().map(axis).collect();
+        Some(Figure { data: Some(json!({ "axes": axes })), ..Figure::drawing(&name, &title, scene, caption) })
     }
 
     /// Both criteria of all optima of a gait at a speed, and those that no other beats in both.
-    fn fronts(&self, group: &[&Spot]) -> Option<Figure> {
+    fn fronts(&self, group: &[&Spot], drawn: &Drawn) -> Option<Figure> {
         let first = group.first()?;
         let title = format!("{} at {} m/s", spaced(&first.gait), first.speed);
         let mut plot = Plot::new(title, Axis::new("torque", Criterion::Torque.unit()), Axis::new("energy", "N"));
@@ -221,9 +277,9 @@ impl Space {
             return None;
         }
         for criterion in Criterion::ALL {
-            let spots = group.iter().filter(|spot| spot.criterion == criterion).filter_map(|spot| both(spot));
+            let spots = group.iter().copied().filter(|spot| spot.criterion == criterion);
             let ink = Ink::gait(1 + usize::from(criterion == Criterion::Torque));
-            plot.curves.push(scattered(format!("least {}", criterion.name()), ink, spots));
+            plot.curves.push(drawn.scattered(format!("least {}", criterion.name()), ink, spots, both));
         }
         plot.curves.retain(|curve| !curve.segments.is_empty());
         plot.curves.push(Curve::new("front", Ink::Text, vec![better.into_iter().map(|(_, at)| at).collect()]));
@@ -233,7 +289,7 @@ impl Space {
     }
 
     /// Costs over a varied number, and those that no other beats with as little of it.
-    fn over(&self, k: usize, group: &[&Spot]) -> Option<Figure> {
+    fn over(&self, k: usize, group: &[&Spot], drawn: &Drawn) -> Option<Figure> {
         let (first, name) = (group.first()?, self.numbers.get(k)?);
         let at = |spot: &Spot| Some([*spot.numbers.get(k)?, spot.cost()?]);
         let mut spots = group.iter().filter_map(|spot| at(spot));
@@ -243,7 +299,7 @@ impl Space {
         }
         let title = format!("{}, least {}: {name}", spaced(&first.gait), first.criterion.name());
         let mut plot = Plot::new(title, Axis::new("", ""), Axis::new("", first.criterion.unit()));
-        plot.curves.push(scattered("a robot each".into(), Ink::gait(0), group.iter().filter_map(|spot| at(spot))));
+        plot.curves.push(drawn.scattered("a robot each".into(), Ink::gait(0), group.iter().copied(), at));
         let better = front(group, at).into_iter().map(|(_, at)| at).collect();
         plot.curves.push(Curve::new("front", Ink::Text, vec![better]));
         let [gait, number] = [&first.gait, name].map(|text| text.replace(['/', '{', '}', ','], "-"));
@@ -259,16 +315,27 @@ fn both(spot: &Spot) -> Option<Xy> {
     spot.costs.map(|costs| [costs.torque, costs.energy])
 }
 
-/// Dots that are not connected.
-fn scattered(name: String, ink: Ink, spots: impl Iterator<Item = Xy>) -> Curve {
-    let mut segments: Vec<Vec<Xy>> = spots.map(|spot| vec![spot]).collect();
-    let every = segments.len().div_ceil(LINES).max(1);
-    let mut k = 0;
-    segments.retain(|_| {
-        k += 1;
-        (k - 1) % every == 0
-    });
-    Curve { dots: true, ..Curve::new(name, ink, segments) }
+/// Which answers are drawn.
+struct Drawn {
+    /// One robot in so many.
+    every: usize,
+    /// Of their points the numbers that they have on the page.
+    numbers: BTreeMap<usize, usize>,
+}
+
+impl Drawn {
+    /// Dots that are not connected.
+    fn scattered<'a>(
+        &self,
+        name: String,
+        ink: Ink,
+        spots: impl Iterator<Item = &'a Spot>,
+        of: impl Fn(&Spot) -> Option<Xy>,
+    ) -> Curve {
+        let place = |spot: &Spot| Some((*self.numbers.get(&spot.point)?, vec![of(spot)?]));
+        let (numbers, segments) = spots.filter_map(place).unzip();
+        Curve { dots: true, numbers, ..Curve::new(name, ink, segments) }
+    }
 }
 
 /// The spots that no other beats in both of two things of which less is better, by the first of these.
@@ -292,7 +359,8 @@ mod tests {
     fn spot(point: usize, [torque, energy]: [f64; 2]) -> Spot {
         let costs = (torque > 0.0).then_some(Costs { energy, torque });
         let (gait, criterion) = ("trot".into(), Criterion::Energy);
-        Spot { point, design: point, numbers: vec![point as f64], gait, criterion, speed: 0.6, costs }
+        let status = "optimal".into();
+        Spot { point, design: point, numbers: vec![point as f64], gait, criterion, speed: 0.6, costs, status }
     }
 
     /// Against the definition, pair by pair.

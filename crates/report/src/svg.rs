@@ -9,7 +9,7 @@ pub fn inline(scene: &Scene, title: &str) -> Markup {
     let view = format!("0 0 {} {}", short(scene.width), short(scene.height));
     html! {
         svg xmlns="http://www.w3.org/2000/svg" viewBox=(view) role="img" aria-label=(title) {
-            @for mark in &scene.marks { (draw(mark)) }
+            @for (k, mark) in scene.marks.iter().enumerate() { (draw(mark, scene.numbers.get(&k).copied())) }
         }
     }
 }
@@ -23,24 +23,26 @@ pub fn file(scene: &Scene, title: &str) -> String {
             title { (title) }
             style { (PreEscaped(style)) }
             rect width="100%" height="100%" class=(fill(Ink::Paper)) {}
-            @for mark in &scene.marks { (draw(mark)) }
+            @for mark in &scene.marks { (draw(mark, None)) }
         }
     };
     markup.into_string()
 }
 
-fn draw(mark: &Mark) -> Markup {
+/// A mark, with the number of what it stands for.
+fn draw(mark: &Mark, number: Option<usize>) -> Markup {
     match mark {
         Mark::Line { points, pen } => html! {
             path d=(path(points)) class=(format!("s-{}", pen.ink.name())) fill="none" stroke-width=(short(pen.width))
                 stroke-linejoin="round" stroke-linecap="round" stroke-dasharray=[pen.dash.pattern().map(|[a, b]| format!("{a} {b}"))]
-                opacity=[part(pen.opacity)] {}
+                opacity=[part(pen.opacity)] data-k=[number] {}
         },
         Mark::Area { points, ink, opacity } => html! {
             path d=(path(points) + "Z") class=(fill(*ink)) opacity=[part(*opacity)] {}
         },
         Mark::Dot { at, radius, ink, opacity } => html! {
-            circle cx=(short(at[0])) cy=(short(at[1])) r=(short(*radius)) class=(fill(*ink)) opacity=[part(*opacity)] {}
+            circle cx=(short(at[0])) cy=(short(at[1])) r=(short(*radius)) class=(fill(*ink)) opacity=[part(*opacity)]
+                data-k=[number] {}
         },
         Mark::Text { at, text, size, weight, anchor, ink } => {
             let anchor = match anchor {

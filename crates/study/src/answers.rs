@@ -1,14 +1,16 @@
 //! Answers a study's points: derived once, sought from the base robot's optima, verified each by itself.
 
-use crate::row::{Beyond, Optimum, Pushed, Row, Slopes, Status};
+use crate::row::{Beyond, Optimum, Outcome, Pushed, Row, Slopes};
 use crate::study::{FEW, Point, Study};
 use piaffe_interpreter::{Family, Interpreted, Robot, Unloadable};
 use piaffe_model::Gait;
 use piaffe_model::motion::{Criterion, Motion};
+use piaffe_optimizer::altered::Altered;
+use piaffe_optimizer::constraints::sharing::applies;
 use piaffe_optimizer::finite::not_finite;
-use piaffe_optimizer::result::GaitResult;
+use piaffe_optimizer::result::{GaitResult, Status};
 use piaffe_optimizer::search::local::Task;
-use piaffe_optimizer::search::multi_start::{Expected, Found, Settings, search, search_from};
+use piaffe_optimizer::search::multi_start::{Expected, Found, Settings, search_from};
 use piaffe_optimizer::sensitivity::sensitivities;
 use piaffe_optimizer::stability::{PhaseTracking, stability};
 use piaffe_optimizer::verdict::Verdict;
@@ -23,8 +25,23 @@ pub struct Answers<'s> {
     study: &'s Study,
     /// Of each gait what its designs have in common.
     families: BTreeMap<&'s str, Result<Family, String>>,
-    /// Of each point of the first design the optima of the base robot, as their variables Θ.
-    base: Vec<Vec<Vec<f64>>>,
+    /// Of each point of the first design the optima of the base robot.
+    base: Vec<Known>,
+}
+
+/// Optima, as their variables Θ, the best first.
+struct Known {
+    /// Without limits at each real leg.
+    virtual_legs: Vec<Vec<f64>>,
+    /// With them, if they are asked for.
+    real_legs: Vec<Vec<f64>>,
+}
+
+/// What was found of a point.
+struct Answer {
+    found: Found,
+    /// The criterion of the optimum without limits at each real leg, where it was looked for too.
+    virtual_cost: Option<f64>,
 }
 
 impl<'s> Answers<'s> {
@@ -39,11 +56,8 @@ impl<'s> Answers<'s> {
         let of_base = |gait: &'s String| Some((gait.as_str(), member(&families, gait, &study.robot).ok()?));
         let gaits: BTreeMap<&str, Interpreted> = study.gaits.iter().filter_map(of_base).collect();
         let optima = |number: usize| {
-            let Point { gait, criterion, speed, .. } = study.point(number);
-            let settings = Settings { starts: None, seed: study.search.seed, ..Settings::default() };
-            let found = gaits.get(gait).map(|gait| search(gait, criterion, speed, &settings, &|_| {}));
-            let optima = found.into_iter().flat_map(|found| found.optima).take(CARRIED);
-            optima.map(|optimum| optimum.local.theta).collect()
+            let point = study.point(number);
+            gaits.get(point.gait).map_or(Known::NOTHING, |gait| Known::new(study, &point, gait))
         };
         let base = (0..study.of_design()).into_par_iter().map(optima).collect();
         Answers { study, families, base }
@@ -62,8 +76,12 @@ impl<'s> Answers<'s> {
     /// The answer to a point of a study of which this one is the [outline](Study::outline).
     pub fn answer(&self, point: &Point) -> Row {
         match self.gait(point) {
-            Ok(gait) => self.of_gait(point, &gait),
-            Err(why) => self.without(point, Status::NoRobot, brief(&why)),
+            Ok(gait) => match self.limited(&gait) {
+                Ok(None) => self.of_gait(point, &gait, &self.found(point, &gait, None)),
+                Ok(Some(limited)) => self.of_gait(point, &limited, &self.found(point, &gait, Some(&limited))),
+                Err(why) => self.without(point, Outcome::NoRobot, why),
+            },
+            Err(why) => self.without(point, Outcome::NoRobot, brief(&why)),
         }
     }
 
@@ -74,11 +92,25 @@ impl<'s> Answers<'s> {
     pub fn result(&self, number: usize) -> Result<(GaitResult, Interpreted), Unloadable> {
         let point = self.study.point(number);
         let gait = self.study.designs.robot(&self.study.robot, point.design)?.gait(point.gait)?;
-        let found = self.found(&point, &gait);
-        let settings = self.settings(None);
-        let mut result = GaitResult::new(&gait, point.criterion, point.speed, &found, &settings, || 0.0);
-        result.examine(&gait, settings.examination);
+        let result = {
+            let limited = self.limited(&gait).map_err(Unloadable::Specification)?;
+            let Answer { found, virtual_cost } = self.found(&point, &gait, limited.as_ref());
+            let of: &dyn Gait = limited.as_ref().map_or(&gait, |limited| limited);
+            let settings = self.settings(None);
+            let result = GaitResult::new(of, point.criterion, point.speed, &found, &settings, || 0.0);
+            let mut result = GaitResult { virtual_cost, ..result };
+            result.examine(of, settings.examination);
+            result
+        };
         Ok((result, gait))
+    }
+
+    /// The gait with its limits at each real leg, if that is asked for.
+    ///
+    /// # Errors
+    /// If they cannot be imposed there.
+    fn limited<'g>(&self, gait: &'g Interpreted) -> Result<Option<Altered<'g>>, String> {
+        self.study.real_legs.then(|| Altered::at_real_legs(gait)).transpose()
     }
 
     fn gait(&self, point: &Point) -> Result<Interpreted, Unloadable> {
@@ -90,8 +122,28 @@ impl<'s> Answers<'s> {
         Settings { starts, seed: self.study.search.seed, ..Settings::default() }
     }
 
-    fn found(&self, point: &Point, gait: &dyn Gait) -> Found {
-        let (search, known) = (self.study.search, &self.base[point.number % self.study.of_design()]);
+    /// What is found of a gait; with its limits at each real leg from the best optimum without them too, as where it is asked for alone.
+    fn found(&self, point: &Point, gait: &dyn Gait, limited: Option<&Altered>) -> Answer {
+        let known = &self.base[point.number % self.study.of_design()];
+        let found = self.sought(point, gait, &known.virtual_legs);
+        let Some(limited) = limited else { return Answer { found, virtual_cost: None } };
+        let cost = |motion: &Motion| {
+            let verdict = Verdict::by_receipt(gait, point.criterion, point.speed, motion).ok()?;
+            verdict.is_optimal().then(|| verdict.receipt.costs.of(point.criterion))
+        };
+        let virtual_cost = found.optima.iter().find_map(|optimum| cost(&optimum.local.motion));
+        if !applies(limited.description()) {
+            // Equal shares keep to them.
+            return Answer { found, virtual_cost };
+        }
+        let best = found.optima.first().map(|optimum| optimum.local.theta.clone());
+        let from: Vec<_> = best.into_iter().chain(known.real_legs.clone()).collect();
+        Answer { found: self.sought(point, limited, &from), virtual_cost }
+    }
+
+    /// From these optima and from starts that know nothing of them.
+    fn sought(&self, point: &Point, gait: &dyn Gait, known: &[Vec<f64>]) -> Found {
+        let search = self.study.search;
         let task = Task { gait, criterion: point.criterion, speed: point.speed };
         let from = |starts| search_from(&task, &self.settings(starts), known, Expected::Nothing, &|_| {});
         let found = from(Some(search.starts.unwrap_or(FEW)));
@@ -99,30 +151,30 @@ impl<'s> Answers<'s> {
         if found.optima.is_empty() && search.starts.is_none() { from(None) } else { found }
     }
 
-    fn of_gait(&self, point: &Point, gait: &dyn Gait) -> Row {
-        let found = self.found(point, gait);
+    fn of_gait(&self, point: &Point, gait: &dyn Gait, answer: &Answer) -> Row {
+        let found = &answer.found;
         let mut failed = None;
         for optimum in &found.optima {
             match self.verdict(point, gait, &optimum.local.motion) {
                 Ok(verdict) if verdict.is_optimal() => {
-                    let optimum = self.told(point, gait, &optimum.local.motion, verdict, &found);
+                    let optimum = self.told(point, gait, &optimum.local.motion, verdict, answer);
                     if let Some(place) = not_finite(&optimum) {
                         let why = format!("{place} is not a finite number");
-                        return self.without(point, Status::ReceiptFailed, why);
+                        return self.without(point, Outcome::Searched(Status::ReceiptFailed), why);
                     }
-                    return Row { optimum: Some(optimum), ..self.empty(point, Status::Optimal) };
+                    return Row { optimum: Some(optimum), ..self.empty(point, Outcome::Searched(Status::Optimal)) };
                 }
                 Ok(verdict) => failed = failed.or(Some(format!("no receipt: {}", verdict.reasons.join("; ")))),
                 Err(why) => failed = failed.or(Some(format!("the motion could not be re-derived: {why}"))),
             }
         }
         if let Some(why) = failed {
-            return self.without(point, Status::ReceiptFailed, why);
+            return self.without(point, Outcome::Searched(Status::ReceiptFailed), why);
         }
         let GaitResult { status, message, conflicts, .. } =
-            GaitResult::new(gait, point.criterion, point.speed, &found, &self.settings(None), || 0.0);
+            GaitResult::new(gait, point.criterion, point.speed, found, &self.settings(None), || 0.0);
         let conflict = conflicts.into_iter().map(|entry| entry.constraint).collect();
-        Row { conflict, ..self.without(point, status.into(), message) }
+        Row { conflict, ..self.without(point, Outcome::Searched(status), message) }
     }
 
     fn verdict(&self, point: &Point, gait: &dyn Gait, motion: &Motion) -> Result<Verdict, piaffe_verify::VerifyError> {
@@ -130,12 +182,14 @@ impl<'s> Answers<'s> {
         judge(gait, point.criterion, point.speed, motion)
     }
 
-    fn told(&self, point: &Point, gait: &dyn Gait, motion: &Motion, verdict: Verdict, found: &Found) -> Optimum {
+    fn told(&self, point: &Point, gait: &dyn Gait, motion: &Motion, verdict: Verdict, answer: &Answer) -> Optimum {
         let kkt_residual = verdict.kkt_residual().unwrap_or(f64::INFINITY);
         let Verdict { receipt, certificate, .. } = verdict;
+        let effort = answer.found.effort;
         let stability = self.asked(Beyond::Stability).then(|| stability(gait, motion).ok()).flatten();
         Optimum {
             costs: receipt.costs,
+            virtual_cost: answer.virtual_cost,
             durations: motion.half_steps.iter().map(|h| h.duration).collect(),
             step_length: receipt.step_length,
             violation: receipt.max_violation,
@@ -143,9 +197,9 @@ impl<'s> Answers<'s> {
             kkt_residual,
             least: receipt.least,
             active: once(receipt.active.into_iter().map(|finding| finding.constraint)),
-            starts: found.effort.starts,
-            successes: found.effort.successes,
-            optima: found.effort.optima,
+            starts: effort.starts,
+            successes: effort.successes,
+            optima: effort.optima,
             certificate: certificate.map(|certificate| certificate.standing),
             slopes: self
                 .asked(Beyond::Slopes)
@@ -174,11 +228,11 @@ impl<'s> Answers<'s> {
         self.study.beyond.contains(&what)
     }
 
-    fn without(&self, point: &Point, status: Status, why: String) -> Row {
+    fn without(&self, point: &Point, status: Outcome, why: String) -> Row {
         Row { reason: Some(why), ..self.empty(point, status) }
     }
 
-    fn empty(&self, point: &Point, status: Status) -> Row {
+    fn empty(&self, point: &Point, status: Outcome) -> Row {
         Row {
             point: point.number,
             design: point.design,
@@ -191,6 +245,25 @@ impl<'s> Answers<'s> {
             conflict: Vec::new(),
             optimum: None,
         }
+    }
+}
+
+impl Known {
+    const NOTHING: Known = Known { virtual_legs: Vec::new(), real_legs: Vec::new() };
+
+    /// What is found of the base robot, for a point of any design.
+    fn new(study: &Study, point: &Point, gait: &Interpreted) -> Known {
+        let settings = Settings { seed: study.search.seed, ..Settings::default() };
+        let found = |gait: &dyn Gait, from: &[Vec<f64>]| -> Vec<Vec<f64>> {
+            let task = Task { gait, criterion: point.criterion, speed: point.speed };
+            let found = search_from(&task, &settings, from, Expected::Nothing, &|_| {});
+            found.optima.into_iter().take(CARRIED).map(|optimum| optimum.local.theta).collect()
+        };
+        let virtual_legs = found(gait, &[]);
+        let limited = study.real_legs.then(|| Altered::at_real_legs(gait).ok()).flatten();
+        let limited = limited.filter(|limited| applies(limited.description()));
+        let real_legs = limited.map_or(Vec::new(), |limited| found(&limited, &virtual_legs));
+        Known { virtual_legs, real_legs }
     }
 }
 

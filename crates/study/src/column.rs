@@ -19,6 +19,7 @@ pub enum Column {
     Cost,
     Energy,
     Torque,
+    VirtualCost,
     /// Of a phase, from 0.
     Duration(usize),
     StepLength,
@@ -91,6 +92,7 @@ impl Column {
         let mut columns = vec![Point, Design];
         columns.extend(names().map(|(k, name)| Number(k, name)));
         columns.extend([Gait, Criterion, Speed, Status, Reason, Conflict, Cost, Energy, Torque]);
+        columns.extend(study.real_legs.then_some(VirtualCost));
         columns.extend((0..study.phases()).map(Duration));
         columns.extend([StepLength, Violation, CycleError, KktResidual, LeastMargin, LeastLimit, Active]);
         columns.extend([Starts, Successes, Optima]);
@@ -121,6 +123,7 @@ impl Column {
             Cost => "cost".into(),
             Energy => "energy".into(),
             Torque => "torque".into(),
+            VirtualCost => "virtual_cost".into(),
             Duration(phase) => format!("duration.{}", phase + 1),
             StepLength => "step_length".into(),
             Violation => "max_violation".into(),
@@ -145,8 +148,10 @@ impl Column {
         match self {
             Point | Design | Starts | Successes | Optima => Kind::Integer,
             Gait | Criterion | Status | Reason | Conflict | LeastLimit | Active | Certificate => Kind::Text,
-            Number(..) | Speed | Cost | Energy | Torque | Duration(_) | StepLength | Violation | CycleError
-            | KktResidual | LeastMargin | SlopeInSpeed | Slope(..) | PushByClock | PushByPhase => Kind::Number,
+            Number(..) | Speed | Cost | Energy | Torque | VirtualCost | Duration(_) | StepLength | Violation
+            | CycleError | KktResidual | LeastMargin | SlopeInSpeed | Slope(..) | PushByClock | PushByPhase => {
+                Kind::Number
+            }
         }
     }
 
@@ -171,6 +176,7 @@ impl Column {
             Cost => Cell::Number(row.cost()),
             Energy => number(&|o| Some(o.costs.energy)),
             Torque => number(&|o| Some(o.costs.torque)),
+            VirtualCost => number(&|o| o.virtual_cost),
             Duration(phase) => number(&|o| o.durations.get(*phase).copied()),
             StepLength => number(&|o| Some(o.step_length)),
             Violation => number(&|o| Some(o.violation)),

@@ -34,6 +34,7 @@ pub struct Difference {
     /// Of each phase, s.
     pub durations: Pair<Vec<f64>>,
     pub limits: Vec<Room>,
+    /// Where both are least in the same criterion.
     pub slopes: Vec<Slope>,
     pub verdicts: Pair<Verdicts>,
     pub prediction: Option<Prediction>,
@@ -178,7 +179,11 @@ fn both<'r>(a: &'r GaitResult, b: &'r GaitResult) -> impl Iterator<Item = (&'r S
     of_a.iter().filter_map(move |slope| Some((slope, of_b.iter().find(|other| other.parameter == slope.parameter)?)))
 }
 
+/// Of one criterion: those of two have nothing to do with each other.
 fn slopes(a: &GaitResult, b: &GaitResult) -> Vec<Slope> {
+    if a.criterion != b.criterion {
+        return Vec::new();
+    }
     let some = both(a, b).filter(|(a, b)| a.slope != 0.0 || b.slope != 0.0);
     some.map(|(a, b)| Slope {
         parameter: a.parameter.clone(),

@@ -22,6 +22,7 @@ pub struct Question {
     pub criteria: Vec<Criterion>,
     /// m/s.
     pub speeds: Vec<f64>,
+    pub real_legs: bool,
     pub starts: Option<usize>,
     pub seed: u64,
     pub beyond: Vec<Beyond>,
@@ -73,6 +74,7 @@ impl From<&Study> for Question {
             gaits: study.gaits.clone(),
             criteria: study.criteria.clone(),
             speeds: study.speeds.clone(),
+            real_legs: study.real_legs,
             starts: study.search.starts,
             seed: study.search.seed,
             beyond: study.beyond.iter().copied().collect(),
@@ -99,6 +101,7 @@ impl Question {
             gaits: self.gaits.clone(),
             criteria: self.criteria.clone(),
             speeds: self.speeds.clone(),
+            real_legs: self.real_legs,
             search: Search { starts: self.starts, seed: self.seed },
             beyond: self.beyond.iter().copied().collect(),
         };

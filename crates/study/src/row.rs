@@ -1,7 +1,7 @@
 //! The answer to a point.
 
 use piaffe_model::motion::{Costs, Criterion};
-use piaffe_optimizer::result;
+use piaffe_optimizer::result::Status;
 use piaffe_verify::Finding;
 use piaffe_verify::certificate::Standing;
 use serde::{Deserialize, Serialize};
@@ -41,7 +41,7 @@ pub struct Row {
     pub criterion: Criterion,
     /// m/s.
     pub speed: f64,
-    pub status: Status,
+    pub status: Outcome,
     /// In plain words: why there is no optimum; nothing where there is one.
     pub reason: Option<String>,
     /// Constraints that conflict, worst first, where the status says that some do.
@@ -52,38 +52,18 @@ pub struct Row {
 /// What became of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Status {
-    /// A local optimum whose receipt holds.
-    Optimal,
-    /// The constraints conflict from every start.
-    Infeasible,
-    /// No point was found that can be called an optimum.
-    NotConverged,
-    /// An optimum for the optimizer, but its receipt does not hold.
-    ReceiptFailed,
+pub enum Outcome {
     /// There is no robot with these numbers, or none that has this gait.
     NoRobot,
+    /// A motion was looked for.
+    Searched(Status),
 }
 
-impl Status {
+impl Outcome {
     pub fn name(self) -> &'static str {
         match self {
-            Status::Optimal => "optimal",
-            Status::Infeasible => "infeasible",
-            Status::NotConverged => "not-converged",
-            Status::ReceiptFailed => "receipt-failed",
-            Status::NoRobot => "no-robot",
-        }
-    }
-}
-
-impl From<result::Status> for Status {
-    fn from(status: result::Status) -> Status {
-        match status {
-            result::Status::Optimal => Status::Optimal,
-            result::Status::Infeasible => Status::Infeasible,
-            result::Status::NotConverged => Status::NotConverged,
-            result::Status::ReceiptFailed => Status::ReceiptFailed,
+            Outcome::NoRobot => "no-robot",
+            Outcome::Searched(status) => status.name(),
         }
     }
 }
@@ -91,8 +71,10 @@ impl From<result::Status> for Status {
 /// A local optimum with its receipt.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Optimum {
-    /// Both criteria, by the receipt's own integration.
+    /// Both criteria, by the receipt's own integration; with limits at each real leg those of the real joints.
     pub costs: Costs,
+    /// The criterion of the optimum without limits at each real leg, where it was looked for too and there is one.
+    pub virtual_cost: Option<f64>,
     /// Of each phase, s.
     pub durations: Vec<f64>,
     /// m.

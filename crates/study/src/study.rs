@@ -5,6 +5,7 @@ use crate::row::Beyond;
 use piaffe_interpreter::Robot;
 use piaffe_model::hash;
 use piaffe_model::motion::Criterion;
+use piaffe_optimizer::altered::Altered;
 use std::collections::BTreeSet;
 
 /// A question to many robots.
@@ -21,6 +22,8 @@ pub struct Study {
     pub criteria: Vec<Criterion>,
     /// Mean forward speeds, m/s.
     pub speeds: Vec<f64>,
+    /// Whether limits hold at each real leg too, whose cost is then the least.
+    pub real_legs: bool,
     pub search: Search,
     /// What is told of an optimum beyond its receipt.
     pub beyond: BTreeSet<Beyond>,
@@ -74,6 +77,7 @@ impl Study {
         for speed in self.speeds.iter().filter(|speed| !(speed.is_finite() && **speed > 0.0)) {
             faults.push(format!("a speed of {speed} m/s cannot be asked for: it must be a positive number"));
         }
+        faults.extend(self.gaits.iter().filter(|_| self.real_legs).filter_map(|gait| self.not_at_real_legs(gait)));
         let lists = [
             ("design", self.designs.count()),
             ("gait", self.gaits.len()),
@@ -82,6 +86,11 @@ impl Study {
         ];
         faults.extend(lists.iter().filter(|(_, count)| *count == 0).map(|(what, _)| format!("there is no {what}")));
         faults
+    }
+
+    /// Why limits cannot be imposed at each real leg of a gait, if they cannot. What has no such gait is another fault.
+    fn not_at_real_legs(&self, gait: &str) -> Option<String> {
+        Altered::at_real_legs(&self.robot.gait(gait).ok()?).err()
     }
 
     /// How many questions it has.
@@ -124,10 +133,10 @@ impl Study {
 
     /// Tells one study from another: a hash of all that its answers depend on.
     pub fn fingerprint(&self) -> String {
-        let Study { robot, designs, gaits, criteria, speeds, search, beyond } = self;
+        let Study { robot, designs, gaits, criteria, speeds, real_legs, search, beyond } = self;
         let version = env!("CARGO_PKG_VERSION");
         let asked = format!(
-            "{version} {:?} {designs:?} {gaits:?} {criteria:?} {speeds:?} {search:?} {beyond:?}",
+            "{version} {:?} {designs:?} {gaits:?} {criteria:?} {speeds:?} {real_legs} {search:?} {beyond:?}",
             placeless(robot.files())
         );
         format!("{:016x}", hash(&asked))

@@ -1,8 +1,9 @@
-//! Rows as files: CSV, and Parquet where the crate is built with it.
+//! Rows as CSV, and designs from tables.
 
 use crate::column::{Cell, Column};
 use crate::designs::Designs;
 use crate::row::Row;
+use std::fmt;
 
 /// The table as CSV (RFC 4180, UTF-8). Numbers have all of their digits; what is not there is empty.
 pub fn csv(columns: &[Column], rows: &[Row]) -> Result<Vec<u8>, csv::Error> {
@@ -23,19 +24,40 @@ fn written(cell: Cell) -> String {
     }
 }
 
-/// Designs from a CSV table: a column for each number under its name, a line for each design.
+/// How Parquet begins.
+const PARQUET: &[u8] = b"PAR1";
+
+/// Designs from a table: CSV, or Parquet where the crate is built with it.
 ///
 /// # Errors
-/// Everything in it that is no number, with its line.
-pub fn designs(text: &str) -> Result<Designs, String> {
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).flexible(true).from_reader(text.as_bytes());
-    let names: Vec<String> = reader.headers().map_err(|why| why.to_string())?.iter().map(String::from).collect();
-    if names.iter().all(String::is_empty) {
-        return Err("it has no names of numbers in its first line".into());
+/// What cannot be read, or everything in it that is no number, with its place.
+pub fn designs(file: Vec<u8>) -> Result<Designs, Unlisted> {
+    match file.starts_with(PARQUET) {
+        #[cfg(feature = "parquet")]
+        true => crate::columnar::designs(file),
+        #[cfg(not(feature = "parquet"))]
+        true => Err(Unlisted::unreadable("it is Parquet, without which this program was built: give CSV".into())),
+        false => match String::from_utf8(file) {
+            Ok(text) => of_text(&text),
+            Err(_) => Err(Unlisted::unreadable("it is neither text nor Parquet".into())),
+        },
     }
-    let (mut rows, mut faults) = (Vec::new(), Vec::new());
+}
+
+/// Designs from a CSV table: a column for each number under its name, a line for each design.
+fn of_text(text: &str) -> Result<Designs, Unlisted> {
+    let unreadable = |why: csv::Error| Unlisted::unreadable(why.to_string());
+    let text = text.trim_start_matches(MARK);
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).flexible(true).from_reader(text.as_bytes());
+    let names: Vec<String> = reader.headers().map_err(unreadable)?.iter().map(String::from).collect();
+    if names.iter().all(String::is_empty) {
+        return Err(Unlisted::unreadable("it has no names of numbers in its first line".into()));
+    }
+    let nameless = names.iter().enumerate().filter(|(_, name)| name.is_empty());
+    let mut faults: Vec<String> = nameless.map(|(k, _)| format!("line 1: column {} has no name", k + 1)).collect();
+    let mut rows = Vec::new();
     for record in reader.records() {
-        let record = record.map_err(|why| why.to_string())?;
+        let record = record.map_err(unreadable)?;
         let line = record.position().map_or(0, csv::Position::line);
         if record.len() != names.len() {
             faults.push(format!("line {line}: {} numbers instead of {}", record.len(), names.len()));
@@ -44,82 +66,60 @@ pub fn designs(text: &str) -> Result<Designs, String> {
         for (name, text) in names.iter().zip(&record) {
             match text.parse::<f64>() {
                 Ok(number) if number.is_finite() => row.push(number),
+                _ if name.is_empty() => {}
+                _ if text.is_empty() => faults.push(format!("line {line}: there is no number for {name}")),
                 _ => faults.push(format!("line {line}: `{text}` is no number for {name}")),
             }
         }
         rows.push(row);
     }
-    if faults.is_empty() { Designs::listed(names, &rows) } else { Err(faults.join("\n")) }
+    listed(names, &rows, faults)
 }
 
-/// The table as Parquet: 64-bit integers, doubles and UTF-8, each of which may be absent.
-///
-/// # Errors
-/// If the library cannot write it.
-#[cfg(feature = "parquet")]
-pub fn parquet(columns: &[Column], rows: &[Row]) -> Result<Vec<u8>, parquet::errors::ParquetError> {
-    use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
-    use parquet::file::properties::WriterProperties;
-    use parquet::file::writer::SerializedFileWriter;
-    use std::sync::Arc;
+/// What spreadsheets put before a text to say that it is UTF-8.
+const MARK: char = '\u{feff}';
 
-    /// Rows that are written together.
-    const GROUP: usize = 1 << 16;
+/// Faults that are told; who has seen them knows the others.
+const TOLD: usize = 20;
 
-    let made_by = format!("piaffe {}", env!("CARGO_PKG_VERSION"));
-    let properties = Arc::new(WriterProperties::builder().set_created_by(made_by).build());
-    let mut writer = SerializedFileWriter::new(Vec::new(), schema(columns)?, properties)?;
-    for rows in rows.chunks(GROUP) {
-        let mut group = writer.next_row_group()?;
-        for column in columns {
-            let Some(mut target) = group.next_column()? else { break };
-            let cells: Vec<Cell> = rows.iter().map(|row| column.of(row)).collect();
-            let there: Vec<i16> = cells.iter().map(|cell| i16::from(cell.is_there())).collect();
-            match column.kind() {
-                Kind::Integer => {
-                    let values: Vec<i64> = cells.iter().filter_map(|cell| cell.integer()?.try_into().ok()).collect();
-                    target.typed::<Int64Type>().write_batch(&values, Some(&there), None)?;
-                }
-                Kind::Number => {
-                    let values: Vec<f64> = cells.iter().filter_map(Cell::number).collect();
-                    target.typed::<DoubleType>().write_batch(&values, Some(&there), None)?;
-                }
-                Kind::Text => {
-                    let values: Vec<ByteArray> = cells.iter().filter_map(Cell::text).map(ByteArray::from).collect();
-                    target.typed::<ByteArrayType>().write_batch(&values, Some(&there), None)?;
-                }
-            }
-            target.close()?;
-        }
-        group.close()?;
+/// What is wrong with a table of designs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Unlisted {
+    /// Names of its columns, as far as they can be read: they may be wrong too.
+    pub names: Vec<String>,
+    pub faults: Vec<String>,
+}
+
+impl Unlisted {
+    pub(crate) fn unreadable(why: String) -> Unlisted {
+        Unlisted { faults: vec![why], ..Unlisted::default() }
     }
-    writer.into_inner()
 }
 
-#[cfg(feature = "parquet")]
-use crate::column::Kind;
+impl fmt::Display for Unlisted {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let more = self.faults.len().saturating_sub(TOLD);
+        let told = self.faults.iter().take(TOLD).cloned().chain((more > 0).then(|| format!("and {more} more")));
+        write!(f, "{}", told.collect::<Vec<_>>().join("\n"))
+    }
+}
 
-#[cfg(feature = "parquet")]
-fn schema(columns: &[Column]) -> Result<parquet::schema::types::TypePtr, parquet::errors::ParquetError> {
-    use parquet::basic::{LogicalType, Repetition, Type as Physical};
-    use parquet::schema::types::Type;
-    let field = |column: &Column| {
-        let (physical, logical) = match column.kind() {
-            Kind::Integer => (Physical::INT64, None),
-            Kind::Number => (Physical::DOUBLE, None),
-            Kind::Text => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
-        };
-        let name = column.name();
-        let field = Type::primitive_type_builder(&name, physical);
-        Ok(field.with_repetition(Repetition::OPTIONAL).with_logical_type(logical).build()?.into())
-    };
-    let fields = columns.iter().map(field).collect::<Result<_, parquet::errors::ParquetError>>()?;
-    Ok(Type::group_type_builder("study").with_fields(fields).build()?.into())
+/// The designs, if nothing is wrong with their table.
+pub(crate) fn listed(names: Vec<String>, rows: &[Vec<f64>], faults: Vec<String>) -> Result<Designs, Unlisted> {
+    if !faults.is_empty() {
+        return Err(Unlisted { names, faults });
+    }
+    Designs::listed(names, rows).map_err(Unlisted::unreadable)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::designs;
+    use super::designs as of_file;
+    use crate::designs::Designs;
+
+    fn designs(text: &str) -> Result<Designs, String> {
+        of_file(text.into()).map_err(|why| why.to_string())
+    }
 
     #[test]
     fn a_table_of_numbers_is_a_list_of_designs() {
@@ -135,5 +135,15 @@ mod tests {
             assert!(told.contains(fault), "{told}");
         }
         assert!(designs("").is_err());
+        let told = designs("a,\n1,\n,\n").unwrap_err();
+        assert_eq!(told, "line 1: column 2 has no name\nline 3: there is no number for a");
+        let many = designs(&format!("a\n{}", "x\n".repeat(1000))).unwrap_err();
+        assert!(many.ends_with("and 980 more") && many.lines().count() == 21, "{many}");
+        assert!(of_file(vec![0xff, 0xfe, 0x00]).unwrap_err().to_string().contains("neither text nor Parquet"));
+    }
+
+    #[test]
+    fn a_mark_of_spreadsheets_is_no_part_of_a_name() {
+        assert_eq!(designs("\u{feff}gravity\r\n9.81\r\n").unwrap().names(), ["gravity"]);
     }
 }

@@ -3,8 +3,11 @@
 use piaffe_interpreter::Robot;
 use piaffe_model::motion::Criterion;
 use piaffe_optimizer::examine::Examination;
+use piaffe_optimizer::result::Status;
 use piaffe_optimizer::search::local::Task;
-use piaffe_study::{Answers, Beyond, Designs, Row, Search, Status, Study, Vary};
+use piaffe_optimizer::search::multi_start::Settings;
+use piaffe_sqp::Control;
+use piaffe_study::{Answers, Beyond, Column, Designs, Outcome, Row, Search, Study, Vary};
 use std::collections::BTreeSet;
 
 fn quadruped() -> Robot {
@@ -22,6 +25,7 @@ fn study(robot: Robot, designs: Designs, gait: &str) -> Study {
         gaits: vec![gait.into()],
         criteria: Criterion::ALL.to_vec(),
         speeds: vec![0.6],
+        real_legs: false,
         search: Search::default(),
         beyond: BTreeSet::new(),
     }
@@ -79,11 +83,12 @@ fn what_is_no_robot_or_has_no_motion_says_why() {
     let search = Search { starts: Some(2), seed: 1 };
     let study = Study { search, ..study(quadruped(), designs.unwrap(), "trot") };
     let rows = rows(&study);
-    let status: Vec<Status> = rows.iter().step_by(2).map(|row| row.status).collect();
-    assert_eq!(status, [Status::NoRobot, Status::NoRobot, Status::Infeasible, Status::Optimal]);
+    let status: Vec<Outcome> = rows.iter().step_by(2).map(|row| row.status).collect();
+    let searched = [Status::Infeasible, Status::Optimal].map(Outcome::Searched);
+    assert_eq!(status, [Outcome::NoRobot, Outcome::NoRobot, searched[0], searched[1]]);
     assert!(rows[0].reason.as_ref().unwrap().contains("links.thigh.mass"));
     assert!(rows[4].conflict.iter().any(|limit| limit.contains("torque of knee")), "{:?}", rows[4].conflict);
-    assert!(rows.iter().all(|row| row.optimum.is_some() == (row.status == Status::Optimal)));
+    assert!(rows.iter().all(|row| row.optimum.is_some() == (row.status == Outcome::Searched(Status::Optimal))));
 }
 
 #[test]
@@ -101,4 +106,36 @@ fn every_wrong_name_is_told_at_once() {
     ] {
         assert!(faults.contains(told), "{told}: {faults}");
     }
+}
+
+/// Of a gait whose real legs bear unequal shares, and of one in which equal shares keep to all limits.
+#[test]
+fn limits_at_each_real_leg_are_those_of_a_robot_that_is_asked_for_alone() {
+    for (gait, speed) in [("amble", 0.4), ("trot", 0.6)] {
+        let designs = Designs::grid(&varied(&["links.thigh.mass=1.5"])).unwrap();
+        let study = Study { real_legs: true, speeds: vec![speed], ..study(quadruped(), designs, gait) };
+        for row in rows(&study) {
+            let derived = study.designs.robot(&study.robot, row.design).unwrap().gait(gait).unwrap();
+            let task = Task { gait: &derived, criterion: row.criterion, speed };
+            let alone = task.answer(true, &Settings::default(), &|_| Control::Continue).unwrap();
+            let near = |a: f64, b: Option<f64>| (a - b.unwrap()).abs() <= 1e-6 * a;
+            let (cost, without) = (row.cost().unwrap(), row.optimum.as_ref().unwrap().virtual_cost.unwrap());
+            assert!(
+                near(cost, alone.cost) && near(without, alone.virtual_cost),
+                "{row:?} {:?} {:?}",
+                alone.cost,
+                alone.virtual_cost
+            );
+            assert_eq!(cost > 1.01 * without, gait == "amble", "what they cost: {cost}, {without}");
+        }
+    }
+    let base = Study { real_legs: true, ..study(quadruped(), Designs::base(), "trot") };
+    assert!(Column::all(&base).contains(&Column::VirtualCost));
+    let mut files = base.robot.files().clone();
+    for file in &mut files.gaits {
+        file.text = file.text.replace("half_steps = \"mirrored\"", "half_steps = \"distinct\"");
+    }
+    let uneven = Study { robot: Robot::new(files).unwrap(), gaits: vec!["amble".into()], ..base };
+    let faults = uneven.faults();
+    assert!(faults.len() == 1 && faults[0].contains("half steps that mirror each other"), "{faults:?}");
 }

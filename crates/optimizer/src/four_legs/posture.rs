@@ -6,7 +6,7 @@ use piaffe_model::{Description, Gait, Rotation};
 
 /// Which real legs and joints stand behind the virtual ones.
 pub struct Legs<'a> {
-    pub whole: &'static dyn Whole,
+    pub whole: &'a dyn Whole,
     pub description: &'a Description,
     /// Of each joint of the whole robot the virtual leg's.
     pub joints: Vec<usize>,

@@ -81,13 +81,13 @@ impl<'a> Slopes<'a> {
         let (d, m) = (self.d, &self.linearized.multipliers);
         let mut numbers: Vec<Number> = d.numbers().into_iter().map(Number::constant).collect();
         for (lane, lever) in levers.iter().enumerate() {
-            for (number, slope) in lever.slopes {
+            for (number, slope) in lever.slopes.iter() {
                 numbers.get_mut(*number)?.d[lane] = *slope;
             }
         }
         let numbers = Numbers::of(d, numbers);
         let limits =
-            Limits::along(d, &std::array::from_fn(|lane| d.direction(levers.get(lane).map_or(&[], |l| l.slopes))));
+            Limits::along(d, &std::array::from_fn(|lane| d.direction(levers.get(lane).map_or(&[], |l| &l.slopes))));
         let ends = (0..d.phases.len()).map(|k| self.end(&numbers, k)).collect::<Option<Vec<_>>>()?;
 
         let units = self.linearized.cycle.units();

@@ -102,7 +102,7 @@ pub fn sensitivities(
     let mut list = vec![entry("speed", &["speed"], "m/s", speed, slopes.in_speed())];
     for chunk in levers.chunks(LANES) {
         let found = slopes.along(chunk).ok_or(Unknown::Undefined)?;
-        list.extend(chunk.iter().zip(found).map(|(l, slope)| entry(l.name, l.numbers, l.unit, l.value, slope)));
+        list.extend(chunk.iter().zip(found).map(|(l, slope)| entry(l.name, &l.numbers, l.unit, l.value, slope)));
     }
     list.sort_by(|a, b| b.elasticity.abs().total_cmp(&a.elasticity.abs()));
     Ok(Sensitivities { slopes: list, one_sided: linearized.unpriced() })
