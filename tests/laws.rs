@@ -106,3 +106,25 @@ fn no_source_is_unsafe() {
         none(lines_with(&sources(folder), "unsafe ").filter(|l| !l.contains("\"")), "unsafe code");
     }
 }
+
+/// Half a minute of every first build. Where a dependency of the program asks for a feature of what the generator uses too, it has
+/// to be said among the build dependencies as well.
+#[test]
+fn the_generator_is_compiled_once() {
+    let listed = std::process::Command::new(env!("CARGO"))
+        .args(["build", "--release", "--offline", "--unit-graph", "-Z", "unstable-options"])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        // What would be compiled is listed by an option that is not stable yet.
+        .env("RUSTC_BOOTSTRAP", "1")
+        .output()
+        .unwrap();
+    let units: serde_json::Value = serde_json::from_slice(&listed.stdout)
+        .unwrap_or_else(|error| panic!("{error}: {}", String::from_utf8_lossy(&listed.stderr)));
+    let units = units["units"].as_array().unwrap();
+    let of = |name: &str| {
+        let compiled = units.iter().filter(|unit| unit["mode"] == "build" && unit["target"]["name"] == name);
+        compiled.map(|unit| unit["features"].to_string()).collect::<Vec<_>>()
+    };
+    let twice = ["anstyle", "either", "serde_core", "rayon", "toml"].map(|name| format!("{name} {:?}", of(name)));
+    assert_eq!(of("piaffe_codegen").len(), 1, "of what it uses: {}", twice.join(", "));
+}
