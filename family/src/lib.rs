@@ -10,7 +10,7 @@
 //! let heavy = trot.with(&[("links.thigh.mass", 2.0), ("links.shin.length", 0.16)])?;
 //! assert_eq!(heavy.parameters()[0], 9.81); // gravity, m/s²
 //! // From here on it is a gait like any other.
-//! let settings = multi_start::Settings { starts: Some(1), seed: 1, ..Settings::default() };
+//! let settings = multi_start::Settings { starts: Some(1), ..Default::default() };
 //! let found = multi_start::search(&*heavy, Criterion::Torque, 0.6, &settings, &|_| ());
 //! assert_eq!(found.optima.len(), 1);
 //! # Ok(())
