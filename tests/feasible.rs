@@ -35,7 +35,7 @@ fn bird() -> Altered<'static> {
 
 fn optimize(gait: &dyn Gait, criterion: Criterion, speed: f64, settings: &Settings) -> GaitResult {
     let found = search(gait, criterion, speed, settings, &|_| {});
-    GaitResult::new(gait, criterion, speed, &found, &settings, || 0.0)
+    GaitResult::new(gait, criterion, speed, &found, settings, || 0.0)
 }
 
 const FEW: Settings = Settings { starts: Some(8), seed: 1, examination: Examination::Full };
