@@ -42,7 +42,7 @@ pub enum Store {
 }
 
 impl Store {
-    /// Where the user wants it: by [`VARIABLE`], else in the folder that the system has for such files. Nowhere if there is none.
+    /// Where the user wants it: by `PIAFFE_CACHE`, else in the folder that the system has for such files. Nowhere if there is none.
     pub fn of_user() -> Store {
         match std::env::var_os(VARIABLE).filter(|place| !place.is_empty()) {
             Some(place) if place == OsStr::new(OFF) => Store::Nowhere,
