@@ -3,7 +3,6 @@
 #[path = "report/browser.rs"]
 mod browser;
 
-use base64::Engine;
 use browser::Browser;
 use piaffe::gaits::GAITS;
 use piaffe::result::GaitResult;
@@ -45,15 +44,6 @@ fn page() -> String {
 
 fn result(gait: &str) -> GaitResult {
     serde_json::from_slice(&std::fs::read(RESULTS.path().join(format!("{gait}.json"))).unwrap()).unwrap()
-}
-
-/// Keeps what the window shows where a person can look at it.
-fn keep(browser: &mut Browser, name: &str) {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("report");
-    std::fs::create_dir_all(&folder).unwrap();
-    let image = base64::engine::general_purpose::STANDARD.decode(browser.screenshot()).unwrap();
-    assert!(image.len() > 20_000, "{name} shows next to nothing");
-    std::fs::write(folder.join(name), image).unwrap();
 }
 
 fn number(value: Value) -> f64 {
@@ -161,7 +151,7 @@ fn the_page_needs_nothing_else_and_fits_desk_and_phone() {
         let show = "document.querySelector(\"TROT\").scrollIntoView({ behavior: 'instant' });
             const s = document.querySelector(\"TROT .time\"); s.value = 230; s.dispatchEvent(new Event('input'))";
         b.eval(&show.replace("TROT", TROT));
-        keep(&mut b, name);
+        b.keep("report", name);
     }
 }
 
@@ -349,7 +339,7 @@ fn a_sweeps_page_says_what_it_draws() {
         b.load(&format!("file://{}", SWEEP.path().join("index.html").display()));
         assert_eq!(b.eval(FLAWS), serde_json::json!([]));
         assert!(b.errors().is_empty(), "{:?}", b.errors());
-        keep(&mut b, if phone { "sweep-phone.png" } else { "sweep-desk.png" });
+        b.keep("report", if phone { "sweep-phone.png" } else { "sweep-desk.png" });
         let pills = b.eval("[...document.querySelectorAll('nav a')].map(a => a.innerText)");
         let mut pills: Vec<&str> = pills.as_array().unwrap().iter().map(|p| p.as_str().unwrap()).collect();
         let count = pills.len();

@@ -4,9 +4,8 @@
 #[path = "report/browser.rs"]
 mod browser;
 
-use base64::Engine;
 use browser::Browser;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
 use std::sync::LazyLock;
 
@@ -122,7 +121,7 @@ fn every_robot_is_told_under_the_pointer_and_by_keys() {
     }
     let told_energy: f64 = told.split("energy ").last().unwrap().split(' ').next().unwrap().parse().unwrap();
     assert!((told_energy / first.number("energy") - 1.0).abs() < 1e-4, "{told}");
-    keep(&mut b, "study-told.png");
+    b.keep("space", "study-told.png");
     for figure in ["front-trot-0.6", "parallel-trot-energy"] {
         assert_eq!(count(&mut b, figure, ".hot"), 1, "{figure}: it does not stand out");
     }
@@ -180,7 +179,7 @@ fn a_range_of_an_axis_selects_in_all_figures() {
     let of_torque = light.iter().filter(|row| row.criterion == "torque" && cheap.contains(&row.design)).count();
     assert_eq!(count(&mut b, "parallel-trot-torque", "[data-k]:not(.faded)"), of_torque);
     b.eval("document.querySelector('.selection').scrollIntoView({ behavior: 'instant' })");
-    keep(&mut b, "study-selected.png");
+    b.keep("space", "study-selected.png");
 
     // A click lets go of an axis, the button of all.
     b.click("[data-figure='overview/parallel-trot-energy'] .grip[data-axis='0']");
@@ -191,13 +190,4 @@ fn a_range_of_an_axis_selects_in_all_figures() {
     assert!(b.errors().is_empty(), "{:?}", b.errors());
     let outside: Vec<String> = b.requests().into_iter().filter(|url| !url.starts_with("file:")).collect();
     assert!(outside.iter().all(|url| url.starts_with("data:")), "{outside:?}");
-}
-
-/// Keeps what the window shows where a person can look at it.
-fn keep(browser: &mut Browser, name: &str) {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("space");
-    std::fs::create_dir_all(&folder).unwrap();
-    let image = base64::engine::general_purpose::STANDARD.decode(browser.screenshot()).unwrap();
-    assert!(image.len() > 20_000, "{name} shows next to nothing");
-    std::fs::write(folder.join(name), image).unwrap();
 }

@@ -44,7 +44,7 @@ impl<'a> Tracked<'a> {
             gait,
             d: gait.description(),
             references: motion.half_steps.iter().map(Polynomials::new).collect(),
-            durations: motion.half_steps.iter().map(|h| h.duration).collect(),
+            durations: motion.durations().collect(),
             restarts,
         }
     }

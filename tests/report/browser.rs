@@ -1,8 +1,9 @@
 //! Chromium without a window, spoken to through its debugging pipe (messages end with a zero byte).
 
+use base64::Engine;
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
@@ -134,9 +135,14 @@ impl Browser {
         self.eval(&format!("new Promise(done => setTimeout(done, {milliseconds}))"));
     }
 
-    /// What the window shows, as PNG in base64.
-    pub fn screenshot(&mut self) -> String {
-        self.call("Page.captureScreenshot", json!({}))["data"].as_str().unwrap().into()
+    /// Keeps what the window shows, as PNG of this name, where a person can look at it.
+    pub fn keep(&mut self, folder: &str, name: &str) {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder);
+        std::fs::create_dir_all(&folder).unwrap();
+        let shown = self.call("Page.captureScreenshot", json!({}));
+        let image = base64::engine::general_purpose::STANDARD.decode(shown["data"].as_str().unwrap()).unwrap();
+        assert!(image.len() > 20_000, "{name} shows next to nothing");
+        std::fs::write(folder.join(name), image).unwrap();
     }
 
     /// Errors that the page has told of.

@@ -84,14 +84,22 @@ struct Arguments {
     /// Needs no compiler. Where the folder model-spec/ is here and has changed since the build, its files are taken too.
     #[arg(long, global = true, value_name = "DIR")]
     robot: Option<PathBuf>,
-    /// How closely to look at the optima of the main job: none, quick or full (see `piaffe optimize --help`).
-    #[arg(long, value_parser = examinations(), default_value = "full", value_name = "LEVEL")]
-    examine: Examination,
+    #[command(flatten)]
+    closely: Closely,
     #[command(flatten)]
     asked: Asked,
     /// Say nothing but errors, and what was asked for with `-`.
     #[arg(long, short, global = true)]
     quiet: bool,
+}
+
+/// Of commands that search.
+#[derive(clap::Args)]
+struct Closely {
+    /// How closely to look at what is found: `none` is its receipt, `quick` its slopes and stability too, `full` also the proof
+    /// between the receipt's instants and the real legs.
+    #[arg(long, value_parser = examinations(), default_value = "full", value_name = "LEVEL")]
+    examine: Examination,
 }
 
 #[derive(Subcommand)]
@@ -157,10 +165,8 @@ enum Command {
         /// Number of starts, a default walk and random ones; if it is not given, as many as the optima found let expect others.
         #[arg(long, value_parser = clap::value_parser!(u32).range(1..=100_000))]
         starts: Option<u32>,
-        /// How closely to look at what is found: `none` is its receipt, `quick` its slopes and stability too, `full` also the proof
-        /// between the receipt's instants and the real legs.
-        #[arg(long, value_parser = examinations(), default_value = "full", value_name = "LEVEL")]
-        examine: Examination,
+        #[command(flatten)]
+        closely: Closely,
         /// Write the whole result as JSON; `-` is standard output.
         #[arg(long, value_name = "FILE|-")]
         json: Option<String>,
@@ -261,10 +267,8 @@ enum Command {
         /// Of the random starts.
         #[arg(long, default_value_t = 1)]
         seed: u64,
-        /// How closely to look at what is found: `none` is its receipt, `quick` its slopes and stability too, `full` also the proof
-        /// between the receipt's instants and the real legs.
-        #[arg(long, value_parser = examinations(), default_value = "full", value_name = "LEVEL")]
-        examine: Examination,
+        #[command(flatten)]
+        closely: Closely,
     },
     /// Set two results side by side: numbers that differ, costs, limits, and how much of the difference the numbers explain.
     ///
@@ -437,14 +441,14 @@ fn gait_names_or_all() -> ValueParser {
 fn answer(arguments: Arguments) -> anyhow::Result<bool> {
     let of_paper = arguments.robot.is_none() && arguments.asked.changes().is_empty();
     match arguments.command {
-        None => main_job::run(&arguments.out, of_paper, arguments.examine),
+        None => main_job::run(&arguments.out, of_paper, arguments.closely.examine),
         Some(Command::Check { folder, svg }) => check::run(&folder, svg.as_deref()),
         Some(Command::Dynamics { gait, file }) => dynamics::run(by_name(&gait)?, &file),
         Some(Command::Model { gait, latex, json }) => model::run(by_name(&gait)?, latex, json.as_deref()),
         Some(Command::Import(arguments)) => import::run(arguments),
-        Some(Command::Optimize { gait, criterion, speed, seed, real_legs, starts, examine, json }) => {
+        Some(Command::Optimize { gait, criterion, speed, seed, real_legs, starts, closely, json }) => {
             let task = Task { gait: by_name(&gait)?, criterion: criterion_by_name(&criterion), speed };
-            optimize::run(task, real_legs, &settings(starts, seed, examine), json.as_deref())
+            optimize::run(task, real_legs, &settings(starts, seed, closely.examine), json.as_deref())
         }
         Some(Command::Completions { shell }) => manual::completions(shell),
         Some(Command::Manual { out }) => manual::pages(&out),
@@ -452,9 +456,16 @@ fn answer(arguments: Arguments) -> anyhow::Result<bool> {
         Some(Command::Lift { result, rate, format, out }) => lift::run(&result, format, rate, &out),
         Some(Command::Verify { results, json }) => verify::run(&results, json.as_deref()),
         Some(Command::Report { results, detail, out }) => report::run(&results, detail, &out),
-        Some(Command::Sweep { gait, criterion, speeds, real_legs, folder, starts, seed, examine }) => {
+        Some(Command::Sweep { gait, criterion, speeds, real_legs, folder, starts, seed, closely }) => {
             let gaits = robots::wanted(&Wanted::by(&gait))?;
-            sweep::run(&gaits, real_legs, &criteria(&criterion), &speeds, &folder, &settings(starts, seed, examine))
+            sweep::run(
+                &gaits,
+                real_legs,
+                &criteria(&criterion),
+                &speeds,
+                &folder,
+                &settings(starts, seed, closely.examine),
+            )
         }
         Some(Command::Diff { a, b, json }) => diff::run(&a, &b, json.as_deref()),
         Some(Command::Study(arguments)) => study::run(arguments),

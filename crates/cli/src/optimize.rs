@@ -27,7 +27,7 @@ pub fn run(task: Task, real_legs: bool, settings: &Settings, json: Option<&str>)
     let mut grounded = None;
     if described && summary::shortest_flight(task.gait.description(), &result).is_some() {
         bar.set_message("without flight");
-        grounded = without_flights(task.gait, &result);
+        grounded = without_flights(task.gait, &result, settings);
     }
     bar.finish_and_clear();
     if described {
@@ -46,14 +46,14 @@ pub fn run(task: Task, real_legs: bool, settings: &Settings, json: Option<&str>)
 const STARTS_BESIDE: usize = 8;
 
 /// The optimum of the same task by a gait of this robot that stands alike and never flies, if there is one.
-fn without_flights(gait: &dyn Gait, result: &GaitResult) -> Option<GaitResult> {
+fn without_flights(gait: &dyn Gait, result: &GaitResult, asked: &Settings) -> Option<GaitResult> {
     let (of, motion) = (gait.description(), result.motion()?);
     let grounded = robots::of_same_robot(of.key).find_map(|walk| {
         let d = walk.description();
         Some((walk, related(of, &motion, d).filter(|_| !d.flies())?))
     });
     let (walk, motion) = grounded?;
-    let settings = Settings { starts: Some(STARTS_BESIDE), ..Settings::default() };
+    let settings = Settings { starts: Some(STARTS_BESIDE), examination: asked.examination, ..Settings::default() };
     let task = Task { gait: walk, criterion: result.criterion, speed: result.speed };
     Some(task.search(&settings, &[theta(&motion)], &|_| {}))
 }

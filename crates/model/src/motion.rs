@@ -8,6 +8,13 @@ pub struct Motion {
     pub half_steps: Vec<HalfStep>,
 }
 
+impl Motion {
+    /// Of each half step, s.
+    pub fn durations(&self) -> impl Iterator<Item = f64> {
+        self.half_steps.iter().map(|half_step| half_step.duration)
+    }
+}
+
 /// A single support phase. Q are the prescribed coordinates in the order of q without β.
 ///
 /// Q(t) is the polynomial (eq. 15) with these initial and final values and rates that passes through

@@ -6,12 +6,11 @@ use crate::result::{GaitResult, NotExamined};
 use crate::sensitivity::sensitivities;
 use crate::stability::stability;
 use piaffe_model::Gait;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::fmt::Display;
 
 /// How closely an optimum is looked at. Its receipt and the first-order conditions are looked at in any case.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Examination {
     /// No more than that.
     None,
@@ -47,36 +46,27 @@ impl GaitResult {
     pub fn examine(&mut self, gait: &dyn Gait, examination: Examination) {
         self.specification = gait.specification().cloned();
         let Some(motion) = self.motion() else { return };
-        let mut open = Vec::new();
-        let mut unasked = |entry: &str| {
-            open.push(NotExamined {
-                entry: entry.into(),
-                reason: format!("not asked for (--examine {})", examination.name()),
-            });
-        };
-        if examination != Examination::Full {
-            unasked("certificate");
-            unasked("real_legs");
-        }
-        if examination == Examination::None {
-            unasked("sensitivities");
-            unasked("stability");
-            self.not_examined = open;
-            return;
-        }
-        if examination == Examination::Full && self.certificate.is_none() {
-            open.push(NotExamined { entry: "certificate".into(), reason: "nothing could be enclosed".into() });
-        }
+        let (quick, full) = (examination != Examination::None, examination == Examination::Full);
         let (legs, (slopes, pushed)) = rayon::join(
-            || (examination == Examination::Full).then(|| RealLegs::new(gait, &motion)),
+            || full.then(|| RealLegs::new(gait, &motion)),
             || {
-                let slopes = || sensitivities(gait, self.criterion, self.speed, &motion);
-                rayon::join(slopes, || stability(gait, &motion))
+                let slopes = || quick.then(|| sensitivities(gait, self.criterion, self.speed, &motion));
+                rayon::join(slopes, || quick.then(|| stability(gait, &motion)))
             },
         );
-        self.stability = told(pushed, "stability", &mut open);
-        self.real_legs = legs.and_then(|legs| told(legs, "real_legs", &mut open));
-        self.sensitivities = told(slopes, "sensitivities", &mut open);
+        let mut open = Vec::new();
+        if full && self.certificate.is_none() {
+            open.push(NotExamined { entry: "certificate".into(), reason: "nothing could be enclosed".into() });
+        }
+        self.stability = pushed.and_then(|found| told(found, "stability", &mut open));
+        self.real_legs = legs.and_then(|found| told(found, "real_legs", &mut open));
+        self.sensitivities = slopes.and_then(|found| told(found, "sensitivities", &mut open));
+        let unasked = self.absent(&format!("not asked for (--examine {})", examination.name()));
+        for absent in unasked {
+            if open.iter().all(|said| said.entry != absent.entry) {
+                open.push(absent);
+            }
+        }
         self.not_examined = open;
     }
 

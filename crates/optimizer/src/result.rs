@@ -291,8 +291,8 @@ impl GaitResult {
     /// Takes in a local optimum that was found elsewhere: as the result if it is the best, else among the others.
     /// Tells whether it was new; without a receipt it does not count.
     pub fn join(&mut self, gait: &dyn Gait, local: &Local, examination: Examination) -> bool {
-        let durations = || local.motion.half_steps.iter().map(|h| h.duration).collect();
-        let claimed = LocalOptimum { cost: local.costs.of(self.criterion), durations: durations(), reached: 0 };
+        let durations = local.motion.durations().collect();
+        let claimed = LocalOptimum { cost: local.costs.of(self.criterion), durations, reached: 0 };
         // Before its verdict, which takes longer than the search did.
         if !local.status.is_optimal() || self.local_optima.iter().any(|known| known.same(&claimed)) {
             return false;
@@ -356,7 +356,7 @@ impl GaitResult {
         self.cost = holds.then(|| receipt.costs.of(self.criterion));
         self.costs = holds.then_some(receipt.costs);
         self.step_length = Some(receipt.step_length);
-        self.durations = motion.half_steps.iter().map(|h| h.duration).collect();
+        self.durations = motion.durations().collect();
         self.variables = motion.half_steps.clone();
         self.peaks = receipt.peaks;
         self.receipt = Some(Receipt {

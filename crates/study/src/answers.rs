@@ -190,7 +190,7 @@ impl<'s> Answers<'s> {
         Optimum {
             costs: receipt.costs,
             virtual_cost: answer.virtual_cost,
-            durations: motion.half_steps.iter().map(|h| h.duration).collect(),
+            durations: motion.durations().collect(),
             step_length: receipt.step_length,
             violation: receipt.max_violation,
             cycle_error: receipt.cycle_error,

@@ -105,7 +105,7 @@ pub fn verify(description: &Description, motion: &Motion, speed: f64, grid: usiz
         return Err(VerifyError::NoTravel { distance: step_length });
     }
     let costs = Costs { energy: sum(|t| t.energy) / distance, torque: sum(|t| t.torque) / distance };
-    let mean_speed = step_length / motion.half_steps.iter().map(|h| h.duration).sum::<f64>();
+    let mean_speed = step_length / motion.durations().sum::<f64>();
     if let (Some(tally), Some(half_step)) = (tallies.last_mut(), motion.half_steps.last()) {
         tally.note(Constraint::MeanSpeed, Units::mean_speed(mean_speed, speed), half_step.duration);
     }

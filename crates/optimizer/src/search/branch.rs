@@ -40,7 +40,7 @@ fn carried(gait: &dyn Gait, from: &GaitResult, speed: f64, steps: usize) -> Opti
 
 fn same(found: &Local, known: &GaitResult) -> bool {
     let near = |a: f64, b: f64, share: f64| (a - b).abs() <= share * a.abs().max(b.abs());
-    let mut durations = found.motion.half_steps.iter().map(|h| h.duration).zip(&known.durations);
+    let mut durations = found.motion.durations().zip(&known.durations);
     known.cost.is_some_and(|cost| near(found.costs.of(known.criterion), cost, COST))
         && durations.all(|(a, b)| near(a, *b, DURATION))
 }

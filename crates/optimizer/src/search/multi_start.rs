@@ -130,9 +130,10 @@ pub fn search_watched(
             break;
         }
         let best = so_far.optima.first().filter(|_| first > 0);
+        let confirming = first == 0 && settings.starts.is_none();
         let batch = match expected {
-            Expected::Theirs(_) if first == 0 && settings.starts.is_none() => CONFIRMING,
-            Expected::NoMotion if first == 0 && settings.starts.is_none() => IN_VAIN,
+            Expected::Theirs(_) if confirming => CONFIRMING,
+            Expected::NoMotion if confirming => IN_VAIN,
             _ => BATCH,
         };
         let next = most.min(first + batch);

@@ -215,7 +215,7 @@ impl<'a> Slopes<'a> {
         for (joint, by) in cycle.objective_by_coulomb(k) {
             lagrangian += numbers.joints[joint].coulomb.scale(by);
         }
-        let durations: Vec<f64> = self.motion.half_steps.iter().map(|h| h.duration).collect();
+        let durations: Vec<f64> = self.motion.durations().collect();
         let constraints = path_constraints_of(d, limits, k);
         let mut state = State::new(d);
         for (node, (weights, rows)) in weights.iter().zip(&rows).enumerate() {
