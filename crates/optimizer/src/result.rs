@@ -1,6 +1,6 @@
 //! A result as it leaves the program: what was asked, what was found, and its receipt.
 
-use crate::cycle::{Label, theta};
+use crate::cycle::{Label, apart, theta};
 use crate::examine::Examination;
 use crate::four_legs::RealLegs;
 use crate::optimality::Optimality;
@@ -195,6 +195,9 @@ pub struct SearchEntry {
     pub seed: u64,
 }
 
+/// How near motions are, in natural sizes of the variables, that two ways have led to.
+const SAME_MOTION: f64 = 1e-4;
+
 impl LocalOptimum {
     /// Whether both are one optimum, met from two sides.
     fn same(&self, other: &LocalOptimum) -> bool {
@@ -291,16 +294,18 @@ impl GaitResult {
     /// Takes in a local optimum that was found elsewhere: as the result if it is the best, else among the others.
     /// Tells whether it was new; without a receipt it does not count.
     pub fn join(&mut self, gait: &dyn Gait, local: &Local, examination: Examination) -> bool {
-        let durations = local.motion.durations().collect();
-        let claimed = LocalOptimum { cost: local.costs.of(self.criterion), durations, reached: 0 };
         // Before its verdict, which takes longer than the search did.
-        if !local.status.is_optimal() || self.local_optima.iter().any(|known| known.same(&claimed)) {
+        if !local.status.is_optimal() || self.is_motion(gait, local) {
             return false;
         }
         let mut candidate = GaitResult::empty(gait, self.criterion, self.speed, self.search);
         candidate.take(gait, local, examination);
+        // Of costs only those of receipts compare: the optimizer's, from its nodes, differ by more than two optima may.
         let Some(cost) = candidate.cost else { return false };
-        let new = LocalOptimum { cost, ..claimed };
+        let new = LocalOptimum { cost, durations: candidate.durations.clone(), reached: 0 };
+        if self.local_optima.iter().any(|known| known.same(&new)) {
+            return false;
+        }
         self.local_optima.push(new);
         self.local_optima.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         if self.cost.is_none_or(|known| cost < known) {
@@ -309,6 +314,11 @@ impl GaitResult {
             *self = candidate;
         }
         true
+    }
+
+    /// Whether the motion of `local` is this one.
+    fn is_motion(&self, gait: &dyn Gait, local: &Local) -> bool {
+        self.theta().is_some_and(|own| apart(gait.description(), &own, &local.theta) < SAME_MOTION)
     }
 
     /// What tells it from others: gait, criterion, speed to its last digit, and whether the real legs are limited.

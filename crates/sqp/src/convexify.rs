@@ -6,6 +6,8 @@
 //!
 //! If that is still indefinite, its negative eigenvalues change their sign, in a metric D that knows the variables' scales:
 //! directions of negative curvature are descended as fast as their curvature says, all others stay Newton's.
+//!
+//! W stays what it is until the next iterate, however often its subproblem is solved with smaller radii; so does the stand-in.
 
 use super::dense::{axpy, cholesky, max_abs, rank_one};
 use super::eigen;
@@ -20,9 +22,14 @@ const FLATTEST: f64 = 1e-10;
 #[derive(Clone, Debug)]
 pub(super) struct Convexifier {
     u: Vec<f64>,
-    /// AᵀA, and W + γAᵀA.
+    /// AᵀA.
     normal: Vec<f64>,
+    /// The stand-in, the same without γAᵀA, and its linear part γAᵀb.
     augmented: Vec<f64>,
+    plain: Vec<f64>,
+    linear: Vec<f64>,
+    /// Whether they are those of the present W, and whether it was augmented.
+    known: Option<bool>,
     active: Vec<usize>,
     vectors: Vec<f64>,
     lambda: Vec<f64>,
@@ -35,6 +42,9 @@ impl Convexifier {
             u: vec![0.0; n * n],
             normal: vec![0.0; n * n],
             augmented: vec![0.0; n * n],
+            plain: vec![0.0; n * n],
+            linear: vec![0.0; n],
+            known: None,
             active: Vec::with_capacity(n),
             vectors: vec![0.0; n * n],
             lambda: vec![0.0; n],
@@ -42,16 +52,34 @@ impl Convexifier {
         }
     }
 
+    /// There is another W.
+    pub(super) fn forget(&mut self) {
+        self.known = None;
+    }
+
     /// Writes the stand-in for `w` and its linear part into `qp` (whose gradient must be ∇f), and turns `w` itself into the
     /// stand-in without γAᵀA, the curvature of the model along the constraints. `model`: the quasi-Newton matrix, the stand-in
     /// of last resort. With `augment`, the rows that `qp` hints at are expected to stay active; else γ = 0.
     pub(super) fn convexify(&mut self, w: &mut [f64], qp: &mut Quadratic, model: &[f64], augment: bool) {
+        if self.known != Some(augment) {
+            self.plain.copy_from_slice(w);
+            self.linear.fill(0.0);
+            self.stand_in(qp, model, augment);
+            self.known = Some(augment);
+        }
+        w.copy_from_slice(&self.plain);
+        qp.hessian.copy_from_slice(&self.augmented);
+        axpy(1.0, &self.linear, &mut qp.gradient);
+    }
+
+    /// Of W in `plain`.
+    fn stand_in(&mut self, qp: &Quadratic, model: &[f64], augment: bool) {
         let n = qp.n;
-        let size = max_abs(w).max(1e-8);
+        let size = max_abs(&self.plain).max(1e-8);
         // Barely definite is not enough: the steps of the active-set method would be noise.
         let floor = NOISE * size;
-        if self.definite(w, n, floor) {
-            qp.hessian.copy_from_slice(w);
+        self.augmented.copy_from_slice(&self.plain);
+        if self.definite(n, floor) {
             return;
         }
         self.active.clear();
@@ -67,58 +95,53 @@ impl Convexifier {
                 break;
             }
             gamma = candidate * size;
-            self.augment(w, gamma);
-            let augmented = std::mem::take(&mut self.augmented);
-            definite = self.definite(&augmented, n, floor);
-            self.augmented = augmented;
+            self.augment(gamma);
+            definite = self.definite(n, floor);
         }
         if !definite {
             // A moderate γ keeps the eigenvectors of the two parts apart well enough.
             gamma = if self.active.is_empty() { 0.0 } else { 1e1 * size };
-            self.augment(w, gamma);
-            if !self.reflect(w, n, size) {
-                w.copy_from_slice(model);
+            self.augment(gamma);
+            if !self.reflect(n, size) {
+                self.plain.copy_from_slice(model);
                 self.augmented.copy_from_slice(model);
                 gamma = 0.0;
             }
         }
-        qp.hessian.copy_from_slice(&self.augmented);
         if gamma > 0.0 {
             for &i in &self.active {
-                let b = qp.constants[i];
-                axpy(gamma * b, &qp.rows[i * n..(i + 1) * n], &mut qp.gradient);
+                axpy(gamma * qp.constants[i], qp.row(i), &mut self.linear);
             }
         }
     }
 
     /// W + γAᵀA.
-    fn augment(&mut self, w: &[f64], gamma: f64) {
-        self.augmented.copy_from_slice(w);
+    fn augment(&mut self, gamma: f64) {
+        self.augmented.copy_from_slice(&self.plain);
         if gamma > 0.0 {
             axpy(gamma, &self.normal, &mut self.augmented);
         }
     }
 
     /// Adds (|λ| − λ)·(Dv)(Dv)ᵀ to both matrices for each eigenpair of D⁻¹(W + γAᵀA)D⁻¹ with λ < 0 (or nearly 0).
-    fn reflect(&mut self, w: &mut [f64], n: usize, size: f64) -> bool {
+    fn reflect(&mut self, n: usize, size: f64) -> bool {
         self.vectors.copy_from_slice(&self.augmented);
         if !eigen::symmetric(&mut self.vectors, &mut self.lambda, &mut self.off) {
             return false;
         }
-        for k in 0..n {
-            let lambda = self.lambda[k];
+        for (lambda, vector) in self.lambda.iter().zip(self.vectors.chunks_exact(n)) {
             let wanted = lambda.abs().max(FLATTEST * size);
-            if lambda < wanted {
-                let vector = &self.vectors[k * n..(k + 1) * n];
-                rank_one(wanted - lambda, vector, w);
+            if *lambda < wanted {
+                rank_one(wanted - lambda, vector, &mut self.plain);
                 rank_one(wanted - lambda, vector, &mut self.augmented);
             }
         }
         true
     }
 
-    fn definite(&mut self, a: &[f64], n: usize, floor: f64) -> bool {
+    /// Whether `augmented` is.
+    fn definite(&mut self, n: usize, floor: f64) -> bool {
         // The smallest squared pivot bounds the smallest eigenvalue from above; near enough as a safeguard.
-        cholesky(a, n, &mut self.u) && (0..n).all(|i| self.u[i * n + i] * self.u[i * n + i] > floor)
+        cholesky(&self.augmented, n, &mut self.u) && (0..n).all(|i| self.u[i * n + i] * self.u[i * n + i] > floor)
     }
 }

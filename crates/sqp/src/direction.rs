@@ -119,6 +119,7 @@ impl<P: Problem> Run<'_, '_, P> {
         let newton = self.exact && !self.distrust && self.phase == Phase::Optimality;
         if newton && !self.hessian_known {
             // Once per iterate, before any trial point is evaluated.
+            self.convexifier.forget();
             self.exact = self.view.hessian(&self.lambda, &self.mu, &mut self.hessian);
             self.hessian_known = self.exact;
         }
@@ -152,6 +153,7 @@ impl<P: Problem> Run<'_, '_, P> {
     /// The exact Hessian of −λᵀc_E − μᵀc_I, as the difference of two that contain f, into `curvature`.
     fn violation_hessian(&mut self) -> bool {
         if !self.hessian_known {
+            self.convexifier.forget();
             let mut objective = std::mem::take(&mut self.curvature);
             self.hessian_known = self.view.hessian(&self.lambda, &self.mu, &mut self.hessian)
                 && self.view.hessian(&self.zeros.0, &self.zeros.1, &mut objective);

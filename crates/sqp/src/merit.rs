@@ -101,6 +101,15 @@ impl Merit {
         }
         by_low || by_high
     }
+
+    /// Which share of the promised reduction going from (f, v) to (f⁺, v⁺) delivers, by the end of the interval that sees more of it.
+    pub(super) fn kept(&self, promise: &Promise, from: (f64, f64), to: (f64, f64)) -> f64 {
+        let by = |penalty: f64| {
+            let promised = promise.reduction(penalty);
+            if promised > 0.0 { ((from.0 - to.0) + penalty * (from.1 - to.1)) / promised } else { 0.0 }
+        };
+        by(self.low).max(by(self.high))
+    }
 }
 
 #[cfg(test)]
@@ -113,6 +122,15 @@ mod tests {
         let promise = Promise { slope: 5.0, curvature: 1.0, relief: 0.1 };
         merit.prepare(&promise);
         assert!(promise.reduction(merit.high) >= SHARE * merit.high * promise.relief);
+    }
+
+    #[test]
+    fn what_was_promised_and_came_is_kept() {
+        let merit = Merit { low: 0.1, high: 10.0, ceiling: 1.0, lowerings: 0 };
+        let promise = Promise { slope: -1.0, curvature: 0.5, relief: 0.1 };
+        let [from, to] = [(0.0, 0.1), (-0.375, 0.1)];
+        // The low end was promised 0.76, the high one 1.75, of which 0.375 came.
+        assert!((merit.kept(&promise, from, to) - 0.375 / 0.76).abs() < 1e-12);
     }
 
     #[test]

@@ -8,7 +8,7 @@
 //! microseconds and points somewhere better, where a shorter d costs an evaluation and points to the same bend.
 
 use super::Problem;
-use super::dense::max_abs;
+use super::dense::{dot, max_abs};
 use super::merit::Merit;
 use super::options::Kind;
 use super::run::{Phase, Run};
@@ -16,9 +16,10 @@ use super::scaled::Point;
 
 /// Corrections of one step.
 const CORRECTIONS: usize = 2;
-/// Radius after a refused step, relative to the step; and its growth after a step that filled it.
+/// Radius after a refused step, relative to the step; and its growth after a step that filled it and kept so much of its promise.
 const SHRINK: f64 = 0.3;
 const GROW: f64 = 3.0;
+const KEPT: f64 = 0.5;
 
 impl<P: Problem> Run<'_, '_, P> {
     /// Tries `d`, then its corrections. With `true` the trial point is acceptable and linearized; with `false` the iterate
@@ -29,10 +30,12 @@ impl<P: Problem> Run<'_, '_, P> {
         self.place_trial(false);
         if self.view.evaluate(&mut self.trial).is_ok() {
             let to = self.worth(&self.trial);
-            let accepted = if self.accepts(from, to) { self.land() } else { to.1 > 0.0 && self.correct(from) };
+            let accepted =
+                if self.accepts(from, to) { self.land() } else { self.correction_pays(from, to) && self.correct(from) };
             if accepted {
                 if reach > 0.5 * self.radius {
-                    self.radius *= GROW;
+                    let kept = self.merit().kept(&self.promise, from, self.worth(&self.trial));
+                    self.radius *= if kept > KEPT { GROW } else { 1.0 };
                 } else if reach < 0.1 * self.radius {
                     self.radius = f64::INFINITY;
                 }
@@ -41,6 +44,18 @@ impl<P: Problem> Run<'_, '_, P> {
         }
         self.radius = SHRINK * reach;
         false
+    }
+
+    /// Whether the trial point would be acceptable without its violation. To first order the multipliers tell what becomes of f when
+    /// that is made up for; where f itself has refused the step, at a kink say, no correction helps.
+    fn correction_pays(&self, from: (f64, f64), to: (f64, f64)) -> bool {
+        if to.1 <= 0.0 || self.phase != Phase::Optimality {
+            return to.1 > 0.0;
+        }
+        let values = &self.trial.values;
+        let violated = values.inequalities.iter().zip(&self.mu).filter(|(c, _)| **c < 0.0);
+        let price = dot(&self.lambda, &values.equalities) + violated.map(|(c, mu)| mu * c).sum::<f64>();
+        self.merit.clone().accepts(&self.promise, from, (to.0 - price, 0.0))
     }
 
     fn correct(&mut self, from: (f64, f64)) -> bool {
@@ -93,6 +108,13 @@ impl<P: Problem> Run<'_, '_, P> {
         match self.phase {
             Phase::Optimality => self.merit.accepts(&self.promise, from, to),
             Phase::Feasibility { .. } => Merit::of_violation().accepts(&self.promise, from, to),
+        }
+    }
+
+    fn merit(&self) -> Merit {
+        match self.phase {
+            Phase::Optimality => self.merit.clone(),
+            Phase::Feasibility { .. } => Merit::of_violation(),
         }
     }
 

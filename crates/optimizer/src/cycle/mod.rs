@@ -305,15 +305,7 @@ impl<'a> Cycle<'a> {
 
     /// Natural size of each variable: rad, rad/s, s.
     pub fn scale(&self) -> Vec<f64> {
-        let (v, units) = (&self.variables, &self.units);
-        let mut scale = Vec::new();
-        for _ in 0..v.phases {
-            scale.extend(std::iter::repeat_n(ANGLE, v.orientations));
-            scale.extend(std::iter::repeat_n(RATE * units.rate(), v.orientations));
-            scale.extend(std::iter::repeat_n(ANGLE, v.prescribed * v.interior));
-            scale.push(DURATION * units.time);
-        }
-        scale
+        scale(self.description())
     }
 
     /// Imposes a path constraint at its lowest point near `s`, in the element there, where it is known to have this value
@@ -542,4 +534,23 @@ pub fn theta(motion: &Motion) -> Vec<f64> {
         theta.push(h.duration);
     }
     theta
+}
+
+/// Natural size of each variable: rad, rad/s, s.
+pub fn scale(d: &Description) -> Vec<f64> {
+    let (v, units) = (Variables::new(d), Units::new(d));
+    let mut scale = Vec::new();
+    for _ in 0..v.phases {
+        scale.extend(std::iter::repeat_n(ANGLE, v.orientations));
+        scale.extend(std::iter::repeat_n(RATE * units.rate(), v.orientations));
+        scale.extend(std::iter::repeat_n(ANGLE, v.prescribed * v.interior));
+        scale.push(DURATION * units.time);
+    }
+    scale
+}
+
+/// How far two motions are apart: the largest difference of a variable, in natural sizes.
+pub fn apart(d: &Description, a: &[f64], b: &[f64]) -> f64 {
+    let differences = a.iter().zip(b).zip(scale(d)).map(|((a, b), scale)| (a - b).abs() / scale);
+    differences.fold(0.0, f64::max)
 }

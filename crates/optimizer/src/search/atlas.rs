@@ -1,8 +1,8 @@
 //! Optima over speeds (§6.5): continuation both ways, from the other criterion, and restarts.
 //!
 //! Continuation alone stays in its basin, so every speed also gets starts of its own; and what is
-//! found there is carried to the neighbours until nothing improves, and to gaits that differ in their flights alone. To a speed without an optimum the nearest ones of all
-//! criteria are carried, from both sides and by small steps of the speed.
+//! found there is carried to the neighbours until nothing improves, and to gaits that differ in their flights alone. To a speed
+//! without an optimum those of all criteria are carried, from the speeds on both sides and by small steps.
 
 use super::evidence::Effort;
 use super::journal::{Journal, common, step};
@@ -12,6 +12,7 @@ use super::relative::related;
 use crate::cycle::theta;
 use crate::result::{GaitResult, Status};
 use piaffe_model::motion::Criterion;
+use piaffe_model::units::Units;
 use piaffe_model::{Description, Gait};
 use piaffe_sqp::Control;
 use std::time::Instant;
@@ -25,7 +26,13 @@ const SHORTEST: f64 = 0.1;
 /// How often a point is visited at least: once to search, twice to carry optima to it.
 pub const VISITS: u64 = 3;
 
+/// Where a sweep begins, in the robot's unit of speed: motions are many there and optima few, and they lead on to both sides.
+const BEGINNING: f64 = 0.25;
+
 /// Optima of one gait at all speeds (ascending), criterion by criterion.
+///
+/// Each speed comes after its neighbour towards the beginning, and at each speed the smooth criterion comes first: whether there are motions
+/// does not depend on the criterion, and by that one it is soon told.
 pub fn sweep(
     gait: &dyn Gait,
     criteria: &[Criterion],
@@ -33,41 +40,54 @@ pub fn sweep(
     settings: &Settings,
     journal: &dyn Journal,
 ) -> Vec<Vec<GaitResult>> {
-    let mut lines: Vec<Vec<GaitResult>> = criteria.iter().map(|_| Vec::new()).collect();
-    for (k, &speed) in speeds.iter().enumerate() {
-        for (c, &criterion) in criteria.iter().enumerate() {
-            // The speed before, and the other criterion at this one.
-            let mut neighbours: Vec<Vec<f64>> = Vec::new();
-            neighbours.extend(k.checked_sub(1).and_then(|before| lines[c][before].theta()));
-            neighbours.extend(lines[..c].iter().filter_map(|line| line[k].theta()));
-            let before = k.checked_sub(1).map(|before| &lines[c][before]);
+    let mut found: Vec<Vec<Option<GaitResult>>> = vec![vec![None; speeds.len()]; criteria.len()];
+    let mut order: Vec<usize> = (0..criteria.len()).collect();
+    order.sort_by_key(|c| criteria[*c] != Criterion::Torque);
+    for (k, way) in outwards(gait.description(), speeds) {
+        for (place, &c) in order.iter().enumerate() {
+            let task = Task { gait, criterion: criteria[c], speed: speeds[k] };
+            let near = way.first().and_then(|before| found[c][*before].as_ref());
+            let others = || order[..place].iter().filter_map(|other| found[*other][k].as_ref());
+            let neighbours: Vec<Vec<f64>> = near.into_iter().chain(others()).filter_map(GaitResult::theta).collect();
             let no_motion = |r: &GaitResult| r.status == Status::Infeasible;
-            let expected = match before {
-                // Whatever it is to cost: that the other criterion has none is said of motions.
-                _ if lines[..c].iter().any(|line| no_motion(&line[k])) => Expected::NoMotion,
-                Some(before) if no_motion(before) => Expected::NoMotion,
-                Some(before) if before.is_optimal() => Expected::Theirs(looked(&lines[c])),
+            let expected = match near {
+                _ if others().any(no_motion) => Expected::NoMotion,
+                Some(near) if no_motion(near) => Expected::NoMotion,
+                Some(near) if near.is_optimal() => {
+                    Expected::Theirs(looked(way.iter().filter_map(|k| found[c][*k].as_ref())))
+                }
                 _ => Expected::Nothing,
             };
-            let task = Task { gait, criterion, speed };
             let (result, fresh) = search_at(&task, settings, &neighbours, expected, journal);
             if fresh {
                 journal.point(&result);
             }
-            lines[c].push(result);
+            found[c][k] = Some(result);
             journal.visited(gait, fresh);
         }
     }
+    let mut lines: Vec<Vec<GaitResult>> = found.into_iter().map(|line| line.into_iter().flatten().collect()).collect();
     carry_on(gait, &mut lines, settings, journal);
     lines
+}
+
+/// The speeds (ascending) from where a sweep begins upwards, then downwards; each with those between it and the beginning, the nearest
+/// first.
+fn outwards(d: &Description, speeds: &[f64]) -> impl Iterator<Item = (usize, Vec<usize>)> {
+    let beginning = BEGINNING * Units::new(d).speed();
+    let count = speeds.len();
+    let first = speeds.partition_point(|speed| *speed < beginning).min(count.saturating_sub(1));
+    let up = (first..count).map(move |k| (k, (first..k).rev().collect()));
+    let down = (0..first).rev().map(move |k| (k, (k + 1..=first).collect()));
+    up.chain(down)
 }
 
 /// Speeds before one whose searches count as evidence for it.
 const NEAR: usize = 3;
 
-/// How widely was searched at the last speeds, as far as there are optima without a gap.
-fn looked(line: &[GaitResult]) -> Effort {
-    let near = line.iter().rev().take(NEAR).take_while(|result| result.is_optimal());
+/// How widely was searched at the nearest of these speeds, as far as there are optima without a gap.
+fn looked<'r>(nearest_first: impl Iterator<Item = &'r GaitResult>) -> Effort {
+    let near = nearest_first.take(NEAR).take_while(|result| result.is_optimal());
     near.fold(Effort::default(), |sum, result| sum.with(result.search.effort))
 }
 
@@ -159,16 +179,15 @@ fn carry(
     settings: &Settings,
     journal: &dyn Journal,
 ) -> (bool, bool) {
-    let mut sources = Vec::new();
     let count = lines[c].len();
-    sources.extend(k.checked_sub(1).into_iter().chain((k + 1 < count).then_some(k + 1)).map(|n| (c, n)));
-    sources.extend((0..lines.len()).filter(|other| *other != c).map(|other| (other, k)));
-    if !lines[c][k].is_optimal() {
-        for line in (c..lines.len()).chain(0..c) {
-            let optimal = |n: &usize| lines[line][*n].is_optimal();
-            sources.extend((0..k).rfind(optimal).into_iter().chain((k + 1..count).find(optimal)).map(|n| (line, n)));
-        }
+    // To a speed without an optimum those of all criteria are carried; further ones come by way of its neighbours.
+    let next_door = || k.checked_sub(1).into_iter().chain((k + 1 < count).then_some(k + 1));
+    let wanted = |line: &usize| *line == c || !lines[c][k].is_optimal();
+    let mut sources: Vec<(usize, usize)> = Vec::new();
+    for line in (c..lines.len()).chain(0..c).filter(wanted) {
+        sources.extend(next_door().map(|at| (line, at)));
     }
+    sources.extend((0..lines.len()).filter(|other| *other != c).map(|other| (other, k)));
     let (mut better, mut any_fresh) = (false, false);
     for (line, at) in sources {
         let Some(theta) = lines[line][at].theta() else { continue };

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// Fewer starts settle nothing: neither that all lead to one optimum nor that none leads to any.
-const LEAST: usize = 12;
+pub const LEAST: usize = 12;
 
 /// How widely a search has looked, and what for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

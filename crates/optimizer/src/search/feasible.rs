@@ -1,12 +1,13 @@
 //! Whether there is any motion at all, where a search found no optimum.
 //!
 //! That a problem is infeasible says something about motions, whatever is to be minimized. So before it is said, every start is
-//! asked again: for the optimum of another criterion, and if there is none, for the nearest motion within all limits.
+//! asked again: for the nearest motion within all limits, whatever it costs, and for the optimum by the smooth criterion.
 
 use super::local::{Local, Task};
 use super::multi_start::start;
 use super::watch::{Event, Watch};
 use piaffe_model::motion::Criterion;
+use piaffe_sqp::Iteration;
 use rayon::prelude::*;
 
 /// Starts that run side by side; none are asked after one of them knows a motion.
@@ -24,11 +25,14 @@ pub fn motions(task: &Task, seed: u64, starts: usize, watch: Watch) -> Vec<Local
     Vec::new()
 }
 
-/// A motion to which the k-th start of a seed leads.
+/// A motion to which the k-th start of a seed leads: the nearest one, or the optimum by the smooth criterion if that is another one.
 fn motion(task: &Task, seed: u64, k: usize, watch: Watch) -> Option<Local> {
     let start = start(task.gait, task.criterion, task.speed, seed, k);
-    let others = Criterion::ALL.into_iter().filter(|c| *c != task.criterion);
-    let optima = others.map(|criterion| Task { criterion, ..*task }.descend(&start, &mut |_| watch(Event::Iterate)));
-    let nearest = std::iter::once_with(|| task.nearest_motion(&start, &mut |_| watch(Event::Iterate)));
-    optima.chain(nearest).find(Local::is_motion)
+    let observe = &mut |_: &Iteration| watch(Event::Iterate);
+    let nearest = task.nearest_motion(&start, observe);
+    if nearest.is_motion() {
+        return Some(nearest);
+    }
+    let smooth = Task { criterion: Criterion::Torque, ..*task };
+    (task.criterion != smooth.criterion).then(|| smooth.descend(&start, observe)).filter(Local::is_motion)
 }

@@ -1,11 +1,11 @@
 //! Many starts, all local optima: in parallel, with the same result for any number of threads.
 
-use super::evidence::Effort;
+use super::evidence::{Effort, LEAST};
 use super::feasible::motions;
 use super::guess::{Plan, walk};
 use super::local::{Local, Task};
 use super::watch::{Event, Watch, ended};
-use crate::cycle::{Cycle, theta};
+use crate::cycle::{Cycle, apart, scale, theta};
 use crate::examine::Examination;
 use piaffe_model::Gait;
 use piaffe_model::motion::Criterion;
@@ -116,16 +116,14 @@ pub fn search_watched(
     expected: Expected,
     watch: Watch,
 ) -> Found {
-    let Task { gait, criterion, speed } = *task;
-    let scale = Cycle::new(gait, criterion, speed).scale();
+    let criterion = task.criterion;
     let follow = |theta: &Vec<f64>| End { local: task.follow(theta, &mut |_| watch(Event::Iterate)), informed: true };
     let mut ends: Vec<End> = neighbours.par_iter().map(follow).collect();
     let most = settings.starts.unwrap_or(MOST).max(1);
     let mut first = 0;
     while first < most {
-        let so_far = collect(criterion, &scale, &ends);
-        let confirmed =
-            || is_confirmed(expected, &so_far, &ends[..neighbours.len()], |a, b| same(criterion, &scale, a, b));
+        let so_far = collect(task, &ends);
+        let confirmed = || is_confirmed(expected, &so_far, &ends[..neighbours.len()], |a, b| same(task, a, b));
         if settings.starts.is_none() && (so_far.effort.is_enough() || confirmed()) {
             break;
         }
@@ -145,7 +143,7 @@ pub fn search_watched(
         ends.par_extend(batch);
         first = next;
     }
-    let found = collect(criterion, &scale, &ends);
+    let found = collect(task, &ends);
     if !found.optima.is_empty() {
         return found;
     }
@@ -153,7 +151,7 @@ pub fn search_watched(
     let known = motions(task, settings.seed, found.effort.starts, watch);
     let thetas: Vec<Vec<f64>> = known.iter().map(|local| local.theta.clone()).collect();
     ends.par_extend(thetas.par_iter().map(follow));
-    let mut found = collect(criterion, &scale, &ends);
+    let mut found = collect(task, &ends);
     if found.optima.is_empty() {
         let cheapest = |a: &Local, b: &Local| a.costs.of(criterion).total_cmp(&b.costs.of(criterion));
         // Where a descent got lost is a motion by its own account only.
@@ -174,9 +172,11 @@ fn is_confirmed(expected: Expected, so_far: &Found, carried: &[End], same: impl 
                 carried.iter().any(|end| end.local.status.is_optimal() && same(&end.local, &best.local))
             };
             // Where there are several optima, a few starts do not tell which is the best; with those of the neighbours they may, if
-            // these have as many.
+            // these have as many. As many starts as a search takes at least may, if some of them have come to that of the neighbours.
             let optima = so_far.optima.len();
-            let settled = optima == 1 || (optima <= looked.optima && so_far.effort.with(looked).is_enough());
+            let settled = optima == 1
+                || (optima <= looked.optima && so_far.effort.with(looked).is_enough())
+                || (starts >= LEAST && so_far.optima.first().is_some_and(|best| best.reached >= AGREEING));
             starts >= CONFIRMING && successes >= AGREEING && so_far.optima.first().is_some_and(theirs) && settled
         }
     }
@@ -216,8 +216,7 @@ pub fn start(gait: &dyn Gait, criterion: Criterion, speed: f64, seed: u64, k: us
 /// A random motion near `theta`: every variable moves by up to its natural size.
 fn hop(task: &Task, seed: u64, k: usize, theta: &[f64]) -> Vec<f64> {
     let mut rng = stream(seed, k);
-    let scale = Cycle::new(task.gait, task.criterion, task.speed).scale();
-    theta.iter().zip(scale).map(|(x, scale)| x + scale * (2.0 * rng.f64() - 1.0)).collect()
+    theta.iter().zip(scale(task.gait.description())).map(|(x, scale)| x + scale * (2.0 * rng.f64() - 1.0)).collect()
 }
 
 /// Random numbers of the k-th start.
@@ -226,7 +225,8 @@ fn stream(seed: u64, k: usize) -> fastrand::Rng {
     fastrand::Rng::with_seed(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ k as u64)
 }
 
-fn collect(criterion: Criterion, scale: &[f64], ends: &[End]) -> Found {
+fn collect(task: &Task, ends: &[End]) -> Found {
+    let criterion = task.criterion;
     let (mut good, mut bad): (Vec<&End>, Vec<&End>) = ends.iter().partition(|e| e.local.status.is_optimal());
     // Stable sorts: ties keep the order of the starts.
     good.sort_by(|a, b| a.local.costs.of(criterion).total_cmp(&b.local.costs.of(criterion)));
@@ -236,7 +236,7 @@ fn collect(criterion: Criterion, scale: &[f64], ends: &[End]) -> Found {
     let mut optima: Vec<Optimum> = Vec::new();
     for End { local, informed } in good {
         let reached = usize::from(!informed);
-        match optima.iter_mut().find(|o| same(criterion, scale, &o.local, local)) {
+        match optima.iter_mut().find(|o| same(task, &o.local, local)) {
             Some(known) => known.reached += reached,
             None => optima.push(Optimum { local: local.clone(), reached }),
         }
@@ -250,10 +250,9 @@ fn collect(criterion: Criterion, scale: &[f64], ends: &[End]) -> Found {
 /// How near two motions of one optimum are, in natural sizes of the variables.
 const SAME_MOTION: f64 = 0.2;
 
-/// Whether both are one optimum; `scale` are the natural sizes of the variables.
-fn same(criterion: Criterion, scale: &[f64], a: &Local, b: &Local) -> bool {
-    let (ca, cb) = (a.costs.of(criterion), b.costs.of(criterion));
-    let apart =
-        a.theta.iter().zip(&b.theta).zip(scale).map(|((x, y), scale)| (x - y).abs() / scale).fold(0.0, f64::max);
-    (ca - cb).abs() <= SAME_COST * ca.abs().max(cb.abs()) && apart < SAME_MOTION
+/// Whether both are one optimum.
+fn same(task: &Task, a: &Local, b: &Local) -> bool {
+    let (ca, cb) = (a.costs.of(task.criterion), b.costs.of(task.criterion));
+    (ca - cb).abs() <= SAME_COST * ca.abs().max(cb.abs())
+        && apart(task.gait.description(), &a.theta, &b.theta) < SAME_MOTION
 }
