@@ -1,4 +1,4 @@
-//! A criterion of one's own: the torque criterion, and a price on half steps that are not 0.35 s long.
+//! A criterion of one's own: the torque criterion, and a price on phases that are not 0.35 s long.
 //! `cargo run --release --example own_cost`. Constraints hold at the nodes; `search` also looks between them.
 
 use piaffe::cycle::Cycle;
@@ -49,7 +49,7 @@ fn main() {
             println!("weight {weight}: no such walk");
             continue;
         }
-        println!("weight {weight}: half step {duration:.4} s, torque {:.3} N²·m·s", cycle.costs().torque);
+        println!("weight {weight}: phase {duration:.4} s, torque {:.3} N²·m·s", cycle.costs().torque);
         assert!(solution.status.is_optimal());
     }
 }

@@ -16,10 +16,7 @@ fn main() {
             println!("{speed} m/s: no trot");
             continue;
         };
-        println!(
-            "{speed} m/s: {:.3} N, half step {:.3} s",
-            best.local.costs.energy, best.local.motion.half_steps[0].duration
-        );
+        println!("{speed} m/s: {:.3} N, phase {:.3} s", best.local.costs.energy, best.local.motion.phases[0].duration);
         before = vec![theta(&best.local.motion)];
     }
 }

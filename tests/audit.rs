@@ -86,7 +86,7 @@ fn what_was_changed_is_named() {
         ("/receipt/findings", json!([])),
         ("/certificate/standing", json!("sampled")),
         ("/certificate/bounds/0/margin", json!(0.9)),
-        ("/certificate/half_steps/0/width", json!([0.0, 0.0])),
+        ("/certificate/phases/0/width", json!([0.0, 0.0])),
         ("/peaks/1/torque", json!(0.1)),
         ("/polynomial_order", json!(8)),
         ("/status", json!("receipt-failed")),
@@ -183,6 +183,48 @@ fn what_cannot_be_checked_is_said_to_be_so() {
         claiming[key] = value;
         let (code, statements, words) = audited("claiming.json", &claiming);
         assert!(code == 4 && entries(&statements, "not-confirmed") == [key], "{words}");
+    }
+}
+
+/// A result as builds before gaits with flights wrote it: what a phase is was called a half step, in keys and in words.
+fn older(value: &Value) -> Value {
+    let entry = |(key, value): (&String, &Value)| match (key.as_str(), value) {
+        ("phase", Value::Number(_)) => ("half_step".into(), value.clone()),
+        ("phases", Value::Array(_)) => ("half_steps".into(), older(value)),
+        ("specification", _) => (key.clone(), value.clone()),
+        _ => (key.clone(), older(value)),
+    };
+    match value {
+        Value::Object(map) => map.iter().map(entry).collect(),
+        Value::Array(list) => list.iter().map(older).collect(),
+        Value::String(words) => words.replace("phase", "half step").into(),
+        _ => value.clone(),
+    }
+}
+
+#[test]
+fn results_of_older_builds_are_read_and_confirmed() {
+    for result in [TROT.clone(), optimum("curvet", "energy")] {
+        let old = older(&result);
+        let text = old.to_string();
+        for words in ["\"half_step\":", "\"half_steps\":", "\"shortest half step\""] {
+            assert!(text.contains(words) && !result.to_string().contains(words), "{words}");
+        }
+        let read = |value: &Value| serde_json::from_value::<GaitResult>(value.clone()).unwrap();
+        assert_eq!(read(&old), read(&result));
+        let (code, statements, words) = audited("older.json", &old);
+        assert!(code == 0 && entries(&statements, "confirmed").len() > 10, "{words}");
+        // Nor is less refuted than in a result of today.
+        for (pointer, value) in [
+            ("/certificate/bounds/0/half_step", json!(3)),
+            ("/certificate/bounds/0/constraint", json!("shortest half steps")),
+            ("/certificate/half_steps/0/width", json!([0.0, 0.0])),
+        ] {
+            let mut changed = old.clone();
+            *changed.pointer_mut(pointer).unwrap() = value;
+            let (code, statements, words) = audited("older-changed.json", &changed);
+            assert!(code == 4 && entries(&statements, "not-confirmed") == ["certificate"], "{pointer}: {words}");
+        }
     }
 }
 

@@ -14,7 +14,7 @@ use piaffe::search::guess::{Plan, walk};
 use piaffe::sqp::{Problem, Values};
 use walking::walking;
 
-/// Holds the last joint in every half step, which it need not do in the motion at hand.
+/// Holds the last joint in every phase, which it need not do in the motion at hand.
 fn hold(cycle: &mut Cycle) {
     let joint = cycle.description().joints() - 1;
     let joints: Vec<Still> = (0..cycle.phases()).map(|phase| Still { phase, joint }).collect();

@@ -55,13 +55,13 @@ fn a_controller_that_follows_the_polynomials_does_the_walk() {
         let walk = Walk::even(*gait, &motion, 20).unwrap();
         let d = gait.description();
         for m in &walk.moments {
-            let half = &program["half_steps"][m.phase];
-            let t = m.share * half["duration"].as_f64().unwrap();
+            let phase = &program["phases"][m.phase];
+            let t = m.share * phase["duration"].as_f64().unwrap();
             let stance = m.mode.stance().unwrap();
             let members: Vec<&str> = d.legs[stance].members.iter().map(|m| m.name).collect();
-            assert_eq!(half["stance"], json!(members));
-            assert_eq!(half["coordinates"].as_array().unwrap().len(), d.prescribed());
-            for (j, polynomial) in half["coordinates"].as_array().unwrap().iter().enumerate() {
+            assert_eq!(phase["stance"], json!(members));
+            assert_eq!(phase["coordinates"].as_array().unwrap().len(), d.prescribed());
+            for (j, polynomial) in phase["coordinates"].as_array().unwrap().iter().enumerate() {
                 let c: Vec<f64> =
                     polynomial["coefficients"].as_array().unwrap().iter().map(|c| c.as_f64().unwrap()).collect();
                 let value = |c: &[f64]| c.iter().rev().fold(0.0, |sum, c| sum * t + c);

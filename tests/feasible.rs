@@ -79,12 +79,12 @@ fn least_energy_holds_a_knee_still() {
     assert!(fastest(&motion) < AT_REST);
     // Near by are no better motions, and none that pass for an optimum.
     let mut moved = motion.clone();
-    moved.half_steps[0].q_interior[0][knee] += 1e-3;
+    moved.phases[0].q_interior[0][knee] += 1e-3;
     assert!(fastest(&moved) > 1e-3);
     assert!(optimality(&bird, Criterion::Energy, speed, &moved).unwrap().residual() > 1e-3);
 }
 
-/// The slower a walk, the less its joints move, and the more of them rest for a whole half step: which ones, power tells.
+/// The slower a walk, the less its joints move, and the more of them rest for a whole phase: which ones, power tells.
 #[test]
 fn however_slow_a_walk_is_its_least_energy_is_found() {
     let few = Settings { starts: Some(2), seed: 1, ..Settings::default() };

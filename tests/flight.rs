@@ -24,7 +24,7 @@ fn in_flight_the_real_legs_lack_nothing_and_share_equally() {
             }
         }
         let flights = lift.legs.description.phases.iter().filter(|phase| phase.mode == Mode::Flight).count();
-        let rounds = lift.durations.len() / motion.half_steps.len();
+        let rounds = lift.durations.len() / motion.phases.len();
         assert_eq!(flying, 41 * flights * rounds);
 
         let legs = RealLegs::of(&Lift::even(&gait, &motion, 200).unwrap());

@@ -299,7 +299,7 @@ fn the_command_writes_what_the_library_lifts() {
         assert_eq!(row[column("force_fore_right_y")], i.reactions[1][1]);
         assert_eq!(json["moments"][k]["force"][1][1], i.reactions[1][1]);
     }
-    // The impulses of a half step are in its last row, and by themselves.
+    // The impulses of a phase are in its last row, and by themselves.
     let impulses: Vec<f64> = rows.iter().map(|row| row[column("impulse_fore_left_y")]).collect();
     assert_eq!(impulses.iter().filter(|i| **i != 0.0).count(), 1);
     assert_eq!(json["impacts"].as_array().unwrap().len(), 2);
@@ -388,8 +388,8 @@ fn a_real_joint_has_one_name_everywhere() {
         let walk = Walk::even(*gait, &motion, 2).unwrap();
         let (mjcf, urdf) = (mjcf(&walk), urdf(d));
         let program = serde_json::to_value(controller(*gait, &motion)).unwrap();
-        let half = &program["half_steps"][0];
-        let coordinates = half["coordinates"].as_array().unwrap().iter().chain([&half["unactuated"]]);
+        let phase = &program["phases"][0];
+        let coordinates = phase["coordinates"].as_array().unwrap().iter().chain([&phase["unactuated"]]);
         let followed: Vec<&Value> = coordinates.flat_map(|c| c["joints"].as_array().unwrap()).collect();
         assert_eq!(followed.len(), whole.len());
         for name in &whole {

@@ -48,7 +48,7 @@ fn the_receipt_agrees_with_the_optimizer_that_shares_no_code_with_it() {
         // The optimizer's mesh is just fine enough for its purpose, and |power| has kinks.
         let (torque, energy) =
             (apart(receipt.costs.torque, local.costs.torque), apart(receipt.costs.energy, local.costs.energy));
-        // The best motions of the A1 have more in a half step than the mesh shows.
+        // The best motions of the A1 have more in a phase than the mesh shows.
         let (most, cycle) = if name.starts_with("a1/") { (1e-4, 1e-6) } else { (1e-5, 1e-7) };
         assert!(torque < most && energy < 1e-3, "{name}: {torque:e} {energy:e}");
         assert!(receipt.max_violation < VIOLATION && receipt.cycle_error < cycle, "{name}: {receipt:?}");
@@ -67,14 +67,14 @@ fn a_spoilt_motion_gets_no_receipt() {
         change(&mut motion);
         verify(gait.description(), &motion, 0.6, 501).unwrap()
     };
-    assert!(spoil(&|m| m.half_steps[0].betad_final += 1e-3).cycle_error > 1e-4);
-    assert!(spoil(&|m| m.half_steps[0].q_interior[0][0] += 1e-3).cycle_error > 1e-6);
-    assert!(spoil(&|m| m.half_steps[0].q_final[0] += 1e-2).max_violation > 100.0 * VIOLATION);
+    assert!(spoil(&|m| m.phases[0].betad_final += 1e-3).cycle_error > 1e-4);
+    assert!(spoil(&|m| m.phases[0].q_interior[0][0] += 1e-3).cycle_error > 1e-6);
+    assert!(spoil(&|m| m.phases[0].q_final[0] += 1e-2).max_violation > 100.0 * VIOLATION);
 }
 
 #[test]
 fn forces_and_torques_move_the_robot_as_newton_says() {
-    // Over a half step, impulse of the reaction and weight = change of momentum; checked by finite
+    // Over a phase, impulse of the reaction and weight = change of momentum; checked by finite
     // differences of the platform's path, which no dynamics enters.
     let gait = named("curvet");
     let found =
@@ -89,8 +89,8 @@ fn forces_and_torques_move_the_robot_as_newton_says() {
         gait.centre_of_mass(&x, &vec![0.0; x.len()], &mut out);
         [out[0], out[1]]
     };
-    for half_step in [1, 2] {
-        let part: Vec<_> = samples.iter().filter(|s| s.half_step == half_step).collect();
+    for phase in [1, 2] {
+        let part: Vec<_> = samples.iter().filter(|s| s.phase == phase).collect();
         let h = part[1].t - part[0].t;
         for w in part.windows(3).step_by(40) {
             let [a, b, c] = [centre(w[0]), centre(w[1]), centre(w[2])];

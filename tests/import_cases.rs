@@ -53,7 +53,7 @@ fn says(made: &Import, words: &str) -> bool {
     made.notes.iter().any(|note| note.contains(words)) && made.robot.contains(words)
 }
 
-/// What follows the half steps of a gait.
+/// What follows the phases of a gait.
 fn then(made: &Import, gait: &str) -> Then {
     let robot = parse_robot("robot.toml", &made.robot).unwrap();
     let (name, text) = made.gaits.iter().find(|(name, _)| name == gait).unwrap();
@@ -105,7 +105,7 @@ fn what_a_file_rounds_is_made_alike() {
     let (made, robot) = imported("cad.urdf");
     assert_eq!(then(&made, "walk.toml"), Then::Mirrored);
     assert!((robot.legs[1].chain[1].link.mass - 1.00015).abs() < 1e-12);
-    // Where a person wants them as they are, the half steps are two.
+    // Where a person wants them as they are, the phases are two.
     let (made, robot) = with("cad.urdf", &[("--alike", "0")]);
     assert_eq!(then(&made, "walk.toml"), Then::Repeat);
     assert_eq!(robot.legs[1].chain[1].link.mass, 1.0003);

@@ -28,7 +28,7 @@ fn the_residual_of_an_optimum_is_small_from_the_motion_alone_as_the_optimizer_sa
             let found = optimality(*gait, criterion, 0.6, &local.motion).unwrap();
             let (name, own) = (gait.description().key, local.kkt.stationarity.max(local.kkt.complementarity));
             assert!(own < 1e-6 && found.residual() < 1e-6, "{name} {criterion:?}: {own:e} and {found:?}");
-            // A cycle of unactuated motion has four equations, of two half steps seven, and all have a price.
+            // A cycle of unactuated motion has four equations, of two phases seven, and all have a price.
             let d = gait.description();
             let of_phase = |k: usize| 2 + usize::from(d.transition(k).lands().is_some());
             assert_eq!(found.equations.len(), (0..d.phases.len()).map(of_phase).sum::<usize>() + 1);
@@ -48,7 +48,7 @@ fn a_motion_that_is_feasible_but_no_optimum_has_a_residual() {
     assert!((own.violation - other.violation).abs() < 1e-12 && own.violation < 1e-6);
     // One that is not feasible is told by its violation.
     let mut motion = local.motion;
-    motion.half_steps[0].betad_final += 1e-3;
+    motion.phases[0].betad_final += 1e-3;
     assert!(of(Criterion::Torque, &motion).violation > 1e-5);
 }
 
@@ -62,7 +62,7 @@ fn a_limit_that_just_touches_is_named_but_has_no_price() {
         let gait = Altered::new(trot, |d| d.limits.min_platform_height = lowest - by).unwrap();
         Linearized::new(&gait, Criterion::Energy, 0.6, &motion).unwrap().unpriced()
     };
-    assert_eq!(touching(0.0), ["platform height (half step 1)"]);
+    assert_eq!(touching(0.0), ["platform height (phase 1)"]);
     assert!(touching(1e-4).is_empty());
 }
 

@@ -43,7 +43,7 @@ impl<'a> Tracked<'a> {
         Tracked {
             gait,
             d: gait.description(),
-            references: motion.half_steps.iter().map(Polynomials::new).collect(),
+            references: motion.phases.iter().map(Polynomials::new).collect(),
             durations: motion.durations().collect(),
             restarts,
         }
@@ -181,7 +181,7 @@ impl<'a> Tracked<'a> {
 
 /// Trace and determinant of the return map of a step by differences.
 fn differences(tracked: &Tracked, motion: &Motion) -> [f64; 2] {
-    let start = &motion.half_steps[0];
+    let start = &motion.phases[0];
     let [q, mut qd] = tracked.posture(0, 0.0, start.beta_initial);
     qd[tracked.d.unactuated] = start.betad_initial;
     let sigma = tracked.terms(0, &q, &qd)[2];
@@ -273,8 +273,8 @@ impl Driven<'_> {
         placement[3]
     }
 
-    /// From the middle of a half step to the middle of the next, in (β, σ): there the joints have no errors any more.
-    fn half_step(&self, beta: f64, sigma: f64) -> [f64; 2] {
+    /// From the middle of a phase to the middle of the next, in (β, σ): there the joints have no errors any more.
+    fn phase(&self, beta: f64, sigma: f64) -> [f64; 2] {
         let duration = self.tracked.durations[0];
         let [q, mut qd] = self.tracked.posture(0, 0.5 * duration, beta);
         let [f1, f2, ..] = self.tracked.terms(0, &q, &qd);
@@ -300,7 +300,7 @@ impl Driven<'_> {
 
     /// Largest eigenvalue of the map of a whole step.
     fn factor(&self, motion: &Motion) -> f64 {
-        let start = &motion.half_steps[0];
+        let start = &motion.phases[0];
         let [q, mut qd] = self.tracked.posture(0, 0.0, start.beta_initial);
         qd[self.tracked.d.unactuated] = start.betad_initial;
         let sigma = self.tracked.terms(0, &q, &qd)[2];
@@ -308,7 +308,7 @@ impl Driven<'_> {
         let At { beta, sigma, .. } = self.tracked.until(at, 0.5 * start.duration);
         let h = 1e-5;
         let column = |b: f64, s: f64| {
-            let (plus, minus) = (self.half_step(beta + b, sigma + s), self.half_step(beta - b, sigma - s));
+            let (plus, minus) = (self.phase(beta + b, sigma + s), self.phase(beta - b, sigma - s));
             [0, 1].map(|i| (plus[i] - minus[i]) / (2.0 * h))
         };
         let ([a, c], [b, d]) = (column(h, 0.0), column(0.0, h));
@@ -331,10 +331,10 @@ fn stiff_tracking_comes_near_to_the_limit() {
     assert!(soft < 0.2 && stiff < 0.3 * soft, "{limit}: {soft} {stiff}");
 }
 
-/// One freedom: the robot on the path of its gait, at the gait's own time τ and with some σ, through a half step and its
+/// One freedom: the robot on the path of its gait, at the gait's own time τ and with some σ, through a phase and its
 /// impact. `None` if it falls back.
 fn along_the_path(tracked: &Tracked, motion: &Motion, phase: usize, entry: f64) -> Option<f64> {
-    let h = &motion.half_steps[phase];
+    let h = &motion.phases[phase];
     let (duration, mut sigma) = (h.duration, entry);
     let start = {
         let [q, mut qd] = tracked.posture(phase, 0.0, h.beta_initial);
@@ -383,7 +383,7 @@ fn the_map_of_phase_tracking_is_that_of_simulated_steps() {
         let PhaseTracking::Map { factor, slowest_entry, .. } = found else { continue };
         maps += 1;
         let tracked = Tracked::new(gait, &motion, false);
-        let h = &motion.half_steps[0];
+        let h = &motion.phases[0];
         let [q, mut qd] = tracked.posture(0, 0.0, h.beta_initial);
         qd[d.unactuated] = h.betad_initial;
         let sigma = tracked.terms(0, &q, &qd)[2];

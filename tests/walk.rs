@@ -60,7 +60,7 @@ fn a_virtual_foot_is_the_mean_of_its_real_feet_and_that_of_the_kernel() {
         for (m, swings) in walk.moments.iter().flat_map(|m| m.mode.swinging().map(move |leg| (m, leg))) {
             let foot = *m.virtual_chain(d, swings).last().unwrap();
             // The kernels of a planar gait do not know how far beside its plane a leg is.
-            let known = if d.lateral { foot } else { [foot[0], foot[1], m.feet[swings][2]] };
+            let known = if d.is_spatial() { foot } else { [foot[0], foot[1], m.feet[swings][2]] };
             assert!(distance(known, m.feet[swings]) < 1e-12, "{}", d.gait);
             let members = d.legs[swings].members.len();
             let feet = (0..members).map(|i| *m.chain(d, swings, i).last().unwrap());
@@ -84,12 +84,12 @@ fn steps_follow_each_other_at_the_mean_speed() {
                 assert!(a.iter().zip(&b).all(|(a, b)| distance([a[0] + walk.travel, a[1], a[2]], *b) < 1e-7));
             }
         }
-        // The impact between the half steps changes velocities, not the configuration.
+        // The impact between the phases changes velocities, not the configuration.
         let (before, after) = (&walk.moments[10], &walk.moments[11]);
         assert_eq!(before.time, after.time);
         assert!(distance(before.platform[0], after.platform[0]) < 1e-7, "{}", d.gait);
         assert!(before.q.iter().zip(&after.q).all(|(a, b)| (a - b).abs() < 1e-7), "{}", d.gait);
-        assert_eq!(walk.phases[0].duration, motion.half_steps[0].duration);
+        assert_eq!(walk.phases[0].duration, motion.phases[0].duration);
     }
 }
 

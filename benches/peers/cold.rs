@@ -66,7 +66,7 @@ fn numbers(d: &Description) -> Value {
     let legs: Vec<Value> = d.legs.iter().map(|l| json!({"body": l.foot_body, "foot": l.foot})).collect();
     let swapped: Vec<(usize, f64)> = (0..d.orientations()).map(|k| d.swapped(k)).collect();
     let l = &d.limits;
-    json!({"gravity": d.gravity, "lateral": d.lateral, "order": d.polynomial_order, "unactuated": d.unactuated,
+    json!({"gravity": d.gravity, "spatial": d.is_spatial(), "order": d.polynomial_order, "unactuated": d.unactuated,
         "rotation": match d.rotation { Rotation::None => Value::Null, Rotation::Roll => json!(0), Rotation::Pitch => json!(2) },
         "phases": d.phases.len(), "bodies": bodies, "joints": joints, "legs": legs, "swapped": swapped,
         "friction": l.friction, "min_vertical_force": l.min_vertical_force, "swing_clearance": l.swing_clearance,

@@ -16,7 +16,7 @@ class Model:
 
     def __init__(self, d):
         self.d = d
-        self.np = 3 if d["lateral"] else 2
+        self.np = 3 if d["spatial"] else 2
         self.nj = len(d["joints"])
         self.nq = self.nj + (d["rotation"] is not None)
         n = self.np + self.nq

@@ -87,7 +87,7 @@ class Program:
         self.blocks, self.outputs, self.rows, self.linear, self.lower, self.upper = [], 0, [], [], [], []
         self.objective = []
         for phase in range(d["phases"]):
-            self.half_step(phase)
+            self.stance(phase)
             self.impact(phase)
         travel = [e for phase in range(d["phases"]) for e in ((self.at(phase, self.nodes - 1, "x"), 1), (self.at(phase, 0, "x"), -1))]
         self.row(travel, [(self.place["T", p][0], -speed) for p in range(d["phases"])])
@@ -116,7 +116,7 @@ class Program:
         start, names, size = self.layout[phase]
         return start + node * size + names[name] + index
 
-    def half_step(self, phase):
+    def stance(self, phase):
         model, d, nt = self.model, self.model.d, self.nt
         z = ca.SX.sym("z", 3 * nt + 3)
         Q, Q1, Q2, beta, sigma, T = ca.vertsplit(z, [0, nt, 2 * nt, 3 * nt, 3 * nt + 1, 3 * nt + 2, 3 * nt + 3])
@@ -136,7 +136,7 @@ class Program:
         acceleration = -ca.substitute(balance, b, 0) / ca.jacobian(balance, b)
         torques, reaction, x, swing, swing_rate = inverse(acceleration)
         torques = torques[:model.nj]
-        side = ca.sumsqr(reaction[2]) if d["lateral"] else 0
+        side = ca.sumsqr(reaction[2]) if d["spatial"] else 0
         parts = {"beta": T * rate, "sigma": T * moment, "torque": torques / [j["max_torque"] for j in d["joints"]],
                  "push": reaction[1] / 100, "friction": (d["friction"]**2 * reaction[1]**2 - reaction[0]**2 - side) / 1e4,
                  "swing": 10 * swing, "slope": 10 * T * swing_rate,
@@ -193,7 +193,7 @@ class Program:
                 self.row(at(k, "swing"), (), 10 * h * self.s[k] * (1 - self.s[k]), inf)
 
     def impact(self, phase):
-        """The end of a half step: eq. 12 on the landing foot, and the start of the next."""
+        """The end of a phase: eq. 12 on the landing foot, and the start of the next."""
         model, d, nt, nq = self.model, self.model.d, self.nt, self.model.nq
         landing, following = 1 - phase, (phase + 1) % d["phases"]
         sizes = np.cumsum([0, nt, nt, 1, 1, 1, nq, model.np, nt, 1, 1])
@@ -209,7 +209,7 @@ class Program:
         stance, q0, qd0 = (0, model.swap(q), model.swap(after)) if d["phases"] == 1 else (landing, q, after)
         rates = ca.vertcat(*[qd0[k] for k in range(nq) if k != d["unactuated"]])
         equal = ca.vertcat(jump, next1 - next_T * rates, next_sigma - model.sigmas[stance](q0, qd0)[0])
-        side = ca.sumsqr(impulse[2]) if d["lateral"] else 0
+        side = ca.sumsqr(impulse[2]) if d["spatial"] else 0
         above = ca.vertcat(impulse[1], d["friction"]**2 * impulse[1]**2 - impulse[0]**2 - side, 10 * leaving)
         one = lambda indices: [[(int(i), 1.0)] for i in indices]
         place, last = self.place, self.nodes - 1
@@ -298,7 +298,7 @@ class Program:
         """Variables of a motion; β is interpolated, σ follows from it."""
         x, model = np.zeros(self.size), self.model
         b = model.d["unactuated"]
-        for phase, h in enumerate(motion["half_steps"]):
+        for phase, h in enumerate(motion["phases"]):
             T = h["duration"]
             values = np.array([h["q_initial"], np.multiply(T, h["qd_initial"]), *h["q_interior"], h["q_final"], np.multiply(T, h["qd_final"])])
             x[self.place["B", phase]] = values.T.ravel()

@@ -24,7 +24,7 @@ fuzz_target!(|text: &str| {
         Err(mistakes) => return all_are_told(&mistakes),
     };
     let legs = robot.robot.legs.iter().map(|leg| &leg.chain);
-    let simple = legs.clone().flatten().all(|s| s.joint.axis == Axis::Pitch) && !gait.lateral;
+    let simple = legs.clone().flatten().all(|s| s.joint.axis == Axis::Pitch) && !gait.rotation.is_spatial();
     if simple && legs.map(Vec::len).max().unwrap_or(0) * 2 <= JOINTS {
         let file = |path: &str, text: &str| SpecFile { path: path.into(), text: text.into() };
         let files = RobotFiles {

@@ -44,7 +44,7 @@ def figure(result: Result) -> Figure:
     ]:
         area = areas[name]
         area.plot(walk.t, columns, label=names)
-        for end in walk.t[:-1][np.diff(walk.half_step) != 0]:
+        for end in walk.t[:-1][np.diff(walk.phase) != 0]:
             area.axvline(end, color="0.8", linewidth=1, zorder=0)
         area.set(xlabel="time, s", ylabel=unit)
         area.legend(fontsize="small")

@@ -43,10 +43,10 @@ class Status(Enum):
 
 @dataclass(frozen=True)
 class Finding:
-    """A constraint at a time (s) of a half step (from 1); its margin is in natural units, negative where it is violated."""
+    """A constraint at a time (s) of a phase (from 1); its margin is in natural units, negative where it is violated."""
 
     constraint: str
-    half_step: int
+    phase: int
     time: float
     margin: float
 
@@ -56,7 +56,7 @@ class Receipt:
     """What stands behind a result: a second derivation of its motion, which shares no equation with the first."""
 
     max_violation: float
-    """Largest violation of any constraint at `grid` instants of each half step, in natural units."""
+    """Largest violation of any constraint at `grid` instants of each phase, in natural units."""
     cycle_error: float
     """How far the motion is from a cycle, with the unactuated coordinate integrated anew."""
     kkt_residual: Optional[float]
@@ -68,10 +68,10 @@ class Receipt:
 
 @dataclass(frozen=True)
 class Gap:
-    """Times (s, from the beginning of the half step) between which a constraint could not be proven."""
+    """Times (s, from the beginning of the phase) between which a constraint could not be proven."""
 
     constraint: str
-    half_step: int
+    phase: int
     violated: bool
     """That it is violated is certain, not only possible."""
     start: float
@@ -114,8 +114,8 @@ class Stability:
 
 
 @dataclass(frozen=True)
-class HalfStep:
-    """A phase of the motion: polynomials of the prescribed coordinates (rad, rad/s) and both ends of the unactuated one."""
+class Course:
+    """The course of a phase: polynomials of the prescribed coordinates (rad, rad/s) and both ends of the unactuated one."""
 
     duration: float
     """s."""
@@ -235,10 +235,10 @@ class Result:
         return self._entries["step_length"]  # type: ignore[no-any-return]
 
     @property
-    def half_steps(self) -> Tuple[HalfStep, ...]:
+    def phases(self) -> Tuple[Course, ...]:
         """The motion: its variables, phase by phase."""
         inner = [{**h, "q_interior": [tuple(q) for q in h["q_interior"]]} for h in self._entries["variables"]]
-        return tuple(_of(HalfStep, h) for h in inner)
+        return tuple(_of(Course, h) for h in inner)
 
     @property
     def receipt(self) -> Optional[Receipt]:

@@ -22,7 +22,7 @@ class Walk:
 
     t: Numbers
     """n: from the beginning of the step, s."""
-    half_step: NDArray[np.int64]
+    phase: NDArray[np.int64]
     """n: which phase, from 1."""
     stance: NDArray[np.int64]
     """n: the virtual leg that stands, 1 or 2; 0 in flight."""
@@ -68,7 +68,7 @@ class Walk:
         plain = ["t", "p", "pd", "pdd", "q", "qd", "qdd", "torque", "force", "feet"]
         return cls(
             **{name: named[name] for name in plain},
-            half_step=named["half_step"].astype(np.int64),
+            phase=named["phase"].astype(np.int64),
             stance=named["stance"].astype(np.int64),
             chains={leg: named[f"chain_{leg}"] for leg in words("legs")},
             coordinates=words("coordinates"),

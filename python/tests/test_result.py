@@ -68,8 +68,8 @@ def test_what_a_result_says(result: piaffe.Result) -> None:
     assert [finding.constraint for finding in receipt.findings] == ["swing clearance"]
     assert proof is not None and proof.certified and not proof.gaps
     assert stability is not None and stability.by_clock > 1.0 > (stability.by_phase or 2.0)
-    (step,) = result.half_steps
-    assert (step.duration,) == result.durations
+    (course,) = result.phases
+    assert (course.duration,) == result.durations
     assert not result.not_examined
 
 
@@ -97,7 +97,7 @@ def test_a_walk_obeys_newton(result: piaffe.Result, trot: piaffe.Gait) -> None:
     assert walk.q.shape == (len(walk), len(walk.coordinates)) and walk.feet.shape == (len(walk), len(walk.legs), 3)
     assert walk.torque.shape == (len(walk), len(walk.joints))
     dynamics = piaffe.dynamics(trot)
-    first = walk.half_step == 1
+    first = walk.phase == 1
     # Of what is prescribed follow the torques and the reaction that the walk has.
     prescribed = [walk.coordinates.index(name) for name in dynamics.prescribed]
     inverse = dynamics.inverse(walk.q[first], walk.qd[first], walk.qdd[first][:, prescribed])

@@ -5,7 +5,7 @@ use crate::motions::{gaits, stepping};
 use piaffe::certificate::enclosure::{Model, enclose, instants};
 use piaffe::certificate::taylor::Taylor;
 use piaffe::model::Description;
-use piaffe::motion::HalfStep;
+use piaffe::motion::Course;
 use piaffe::number::Scalar;
 use piaffe::verify::instants::{Instants, State};
 use piaffe::verify::integrate::integrate;
@@ -24,8 +24,8 @@ fn inside<const N: usize>(what: &str, model: &Taylor<N>, tau: f64, exact: Double
     assert!(apart <= model.rest() + slack, "{what}: {apart:e} apart, at most {:e} was claimed", model.rest());
 }
 
-/// From one share of the half step to another, in twice the precision.
-fn integrated(d: &Description, h: &HalfStep, leg: usize, [from, to]: [f64; 2], y: [Double; 2]) -> [Double; 2] {
+/// From one share of the phase to another, in twice the precision.
+fn integrated(d: &Description, h: &Course, leg: usize, [from, to]: [f64; 2], y: [Double; 2]) -> [Double; 2] {
     let mut instants = Instants::<Double>::new(d, Numbers::new(d), &h.cast(), leg);
     let mut state = State::new(d);
     let duration = Double::from(h.duration);
@@ -40,7 +40,7 @@ fn integrated(d: &Description, h: &HalfStep, leg: usize, [from, to]: [f64; 2], y
 fn beta_is_enclosed() {
     for gait in gaits() {
         let d = gait.description();
-        let phases = stepping(d).half_steps;
+        let phases = stepping(d).phases;
         for (leg, h) in phases.iter().enumerate() {
             let pieces = enclose(d, &phases, leg).unwrap();
             let mut y = [h.beta_initial, h.betad_initial].map(Double::from);
@@ -63,9 +63,9 @@ fn beta_is_enclosed() {
     }
 }
 
-fn everything<T: Scalar>(d: &Description, phases: &[HalfStep], k: usize, share: T, beta: [T; 2]) -> Vec<(String, T)> {
+fn everything<T: Scalar>(d: &Description, phases: &[Course], k: usize, share: T, beta: [T; 2]) -> Vec<(String, T)> {
     let mut instants = instants::<T>(d, phases, k);
-    let (h, cast): (_, Vec<HalfStep<T>>) = (&phases[k], phases.iter().map(HalfStep::cast).collect());
+    let (h, cast): (_, Vec<Course<T>>) = (&phases[k], phases.iter().map(Course::cast).collect());
     let mut state = State::new(d);
     let acceleration = instants.at(share * h.duration.into(), beta, &mut state).unwrap();
     let mut all = vec![("β̈".into(), acceleration)];
@@ -84,7 +84,7 @@ fn everything<T: Scalar>(d: &Description, phases: &[HalfStep], k: usize, share: 
 fn what_follows_from_beta_is_enclosed() {
     for gait in gaits() {
         let d = gait.description();
-        let phases = stepping(d).half_steps;
+        let phases = stepping(d).phases;
         for k in 0..phases.len() {
             for piece in enclose(d, &phases, k).unwrap() {
                 let models = everything::<Model>(d, &phases, k, piece.share, piece.beta);
@@ -109,7 +109,7 @@ fn what_follows_from_beta_is_enclosed() {
 #[test]
 fn what_cannot_be_followed_is_said_to_be_lost() {
     let d = gaits()[2].description();
-    let mut h = stepping(d).half_steps[0].clone();
+    let mut h = stepping(d).phases[0].clone();
     h.betad_initial = 1e5;
     assert!(enclose(d, &[h.clone()], 0).is_err());
     h.betad_initial = f64::NAN;

@@ -32,7 +32,7 @@ fn optima_are_certified() {
             let d = gait.description();
             let certificate = certify(d, &optimum(gait, criterion), SPEED).unwrap();
             assert!(certificate.is_certified(), "{} {}: {certificate:?}", d.key, criterion.name());
-            assert!(certificate.half_steps.iter().flat_map(|h| h.width).all(|width| width < 1e-8));
+            assert!(certificate.phases.iter().flat_map(|h| h.width).all(|width| width < 1e-8));
         }
     }
 }
@@ -42,7 +42,7 @@ fn tallies(d: &Description, motion: &Motion, points: usize) -> Vec<Tally> {
     let mut state = State::new(d);
     let one = |(i, h)| {
         let mut tally = Tally::new(d, i + 1);
-        let mut phase = Phase::new(d, h, contact(d, &motion.half_steps, i), i + 1).unwrap();
+        let mut phase = Phase::new(d, h, contact(d, &motion.phases, i), i + 1).unwrap();
         for k in 0..points {
             let t = phase.duration * k as f64 / (points - 1) as f64;
             phase.at(t, &mut state).unwrap();
@@ -52,7 +52,7 @@ fn tallies(d: &Description, motion: &Motion, points: usize) -> Vec<Tally> {
         }
         tally
     };
-    motion.half_steps.iter().enumerate().map(one).collect()
+    motion.phases.iter().enumerate().map(one).collect()
 }
 
 /// No margin that is found anywhere is below what was proven.
@@ -60,7 +60,7 @@ fn bounds_hold(d: &Description, motion: &Motion, certificate: &Certificate) {
     for (i, tally) in tallies(d, motion, 501).iter().enumerate() {
         for constraint in Constraint::all(d).filter(|c| tally.margin(*c).is_finite()) {
             let (name, found) = (constraint.name(d), tally.margin(constraint));
-            let bound = certificate.bounds.iter().find(|b| b.half_step == i + 1 && b.constraint == name).unwrap();
+            let bound = certificate.bounds.iter().find(|b| b.phase == i + 1 && b.constraint == name).unwrap();
             // The samples come from an integration that is off by 1e-11 or so.
             assert!(bound.margin.is_none_or(|m| m <= found + 1e-8), "{name}: {found:e}, but {bound:?}");
         }
@@ -85,9 +85,9 @@ fn bounds_are_below_all_samples() {
     }
 }
 
-/// Where an angle of the first half step is greatest (or least, with `sign` −1), and what it is there.
+/// Where an angle of the first phase is greatest (or least, with `sign` −1), and what it is there.
 fn extreme(d: &Description, motion: &Motion, joint: usize, sign: f64) -> (f64, f64) {
-    let h = &motion.half_steps[0];
+    let h = &motion.phases[0];
     let mut phase = Phase::new(d, h, 0, 1).unwrap();
     let mut state = State::new(d);
     let points = 20_001;
@@ -113,9 +113,9 @@ fn a_limit_that_is_broken_between_the_nodes_of_a_grid_alone_is_found() {
                 d
             };
             // Half of it is tolerated.
-            let ends = time < 0.02 || time > motion.half_steps[0].duration - 0.02;
+            let ends = time < 0.02 || time > motion.phases[0].duration - 0.02;
             if ends || !certify(&limited(9e-7), &motion, SPEED).unwrap().is_certified() {
-                continue; // An end is a node of every grid; in the other half step the joint may go further.
+                continue; // An end is a node of every grid; in the other phase the joint may go further.
             }
             let d = limited(2e-6);
             let name = [Constraint::LowerStop(joint), Constraint::UpperStop(joint)][side].name(&d);
@@ -125,7 +125,7 @@ fn a_limit_that_is_broken_between_the_nodes_of_a_grid_alone_is_found() {
             let certificate = certify(&d, &motion, SPEED).unwrap();
             assert!(!certificate.is_certified());
             let [gap] = certificate.gaps.as_slice() else { panic!("{:?}", certificate.gaps) };
-            assert!(gap.constraint == name && gap.half_step == 1 && gap.violated, "{gap:?}, not {name}");
+            assert!(gap.constraint == name && gap.phase == 1 && gap.violated, "{gap:?}, not {name}");
             assert!(gap.from <= time && time <= gap.to && gap.to - gap.from < 0.01, "{gap:?} at {time}");
             assert!((gap.bound.unwrap() + 2e-6).abs() < 1e-7, "{gap:?}");
             tried += 1;
@@ -137,8 +137,7 @@ fn a_limit_that_is_broken_between_the_nodes_of_a_grid_alone_is_found() {
 #[test]
 fn a_motion_that_does_not_close_is_not_certified() {
     let good = optimum(&Trot, Criterion::Torque);
-    for change in
-        [|m: &mut Motion| m.half_steps[0].betad_initial += 2e-6, |m: &mut Motion| m.half_steps[0].beta_final += 2e-6]
+    for change in [|m: &mut Motion| m.phases[0].betad_initial += 2e-6, |m: &mut Motion| m.phases[0].beta_final += 2e-6]
     {
         let mut motion = good.clone();
         change(&mut motion);
@@ -163,7 +162,7 @@ proptest! {
         let d = gaits()[index].description();
         let mut motion = optima[index].clone();
         let mut shifts = shifts.into_iter().cycle();
-        for h in &mut motion.half_steps {
+        for h in &mut motion.phases {
             for list in h.q_interior.iter_mut().chain([&mut h.q_final, &mut h.q_initial, &mut h.qd_final]) {
                 list.iter_mut().zip(&mut shifts).for_each(|(x, shift)| *x += size * shift);
             }

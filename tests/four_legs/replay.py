@@ -28,7 +28,7 @@ def upright(v):
 
 
 moments = lift["moments"]
-phases = np.array([m["half_step"] for m in moments]) - 1
+phases = np.array([m["phase"] for m in moments]) - 1
 column = {k: np.array([m[k] for m in moments], float) for k in ("t", "q", "qd", "torque")}
 vectors = {k: upright([m[k] for m in moments]) for k in ("position", "velocity", "omega", "force")}
 quaternions = np.array([m["quaternion"] for m in moments])

@@ -2,7 +2,7 @@
 
 use crate::motions::{gaits, stepping};
 use piaffe::model::Description;
-use piaffe::motion::HalfStep;
+use piaffe::motion::Course;
 use piaffe::number::Dual;
 use piaffe::number::Lanes;
 use piaffe::number::Scalar;
@@ -12,9 +12,9 @@ use piaffe::verify::margins::Units;
 use piaffe::verify::numbers::Numbers;
 use piaffe::verify::phase::Phase;
 
-/// Everything about the end of a half step on leg 1: (β, β̇), then all margins.
-fn outcome<T: Scalar>(d: &Description, numbers: Numbers<T>, half_step: &HalfStep<T>) -> Vec<T> {
-    let mut phase = Phase::with(d, numbers, half_step, 0, 1).unwrap();
+/// Everything about the end of a phase on leg 1: (β, β̇), then all margins.
+fn outcome<T: Scalar>(d: &Description, numbers: Numbers<T>, course: &Course<T>) -> Vec<T> {
+    let mut phase = Phase::with(d, numbers, course, 0, 1).unwrap();
     let mut state = State::new(d);
     phase.at(phase.duration, &mut state).unwrap();
     let mut all = phase.beta_end().to_vec();
@@ -28,27 +28,27 @@ fn outcome<T: Scalar>(d: &Description, numbers: Numbers<T>, half_step: &HalfStep
 }
 
 /// A robot with its first thigh heavier by x[0], the shin's mass centre lower by x[1], and β̇ greater by x[2] at the begin.
-fn altered<T: Scalar>(d: &Description, half_step: &HalfStep, x: [T; 3]) -> Vec<T> {
+fn altered<T: Scalar>(d: &Description, course: &Course, x: [T; 3]) -> Vec<T> {
     let mut numbers = Numbers::<T>::new(d);
     numbers.bodies[1].mass += x[0];
     numbers.bodies[2].com.y -= x[1];
     numbers.joints[1].max_torque += x[0];
-    let mut half_step = half_step.cast::<T>();
-    half_step.betad_initial += x[2];
-    outcome(d, numbers, &half_step)
+    let mut course = course.cast::<T>();
+    course.betad_initial += x[2];
+    outcome(d, numbers, &course)
 }
 
 #[test]
-fn duals_differentiate_a_whole_half_step() {
+fn duals_differentiate_a_whole_phase() {
     for gait in gaits() {
         let d = gait.description();
-        let half_step = &stepping(d).half_steps[0];
-        let exact = altered(d, half_step, [0, 1, 2].map(|k| Dual::<f64, 3>::variable(0.0, k)));
+        let course = &stepping(d).phases[0];
+        let exact = altered(d, course, [0, 1, 2].map(|k| Dual::<f64, 3>::variable(0.0, k)));
         for (k, h) in [1e-4, 1e-5, 1e-4].into_iter().enumerate() {
             let [less, more] = [-h, h].map(|h| {
                 let mut x = [0.0; 3];
                 x[k] = h;
-                altered(d, half_step, x)
+                altered(d, course, x)
             });
             for ((dual, less), more) in exact.iter().zip(less).zip(more) {
                 let found = (more - less) / (2.0 * h);
@@ -58,7 +58,7 @@ fn duals_differentiate_a_whole_half_step() {
         }
         // The values are those of plain numbers, to the bit.
         let values: Vec<f64> = exact.iter().map(|x| x.x).collect();
-        assert_eq!(values, altered(d, half_step, [0.0; 3]));
+        assert_eq!(values, altered(d, course, [0.0; 3]));
     }
 }
 
@@ -66,15 +66,15 @@ fn duals_differentiate_a_whole_half_step() {
 fn instants_side_by_side_are_single_instants_to_the_bit() {
     for gait in gaits() {
         let d = gait.description();
-        let half_step = &stepping(d).half_steps[0];
-        let times = [0.0, 0.31, 0.77, 1.0].map(|s| s * half_step.duration);
+        let course = &stepping(d).phases[0];
+        let times = [0.0, 0.31, 0.77, 1.0].map(|s| s * course.duration);
         let (beta, betad) = ([0.1, -0.2, 0.05, 0.3], [1.0, -0.4, 0.2, 2.0]);
         let mut state = State::new(d);
-        let mut together = Instants::<Lanes<4>>::new(d, Numbers::new(d), &half_step.cast(), 0);
+        let mut together = Instants::<Lanes<4>>::new(d, Numbers::new(d), &course.cast(), 0);
         let acceleration = together.at(Lanes(times), [Lanes(beta), Lanes(betad)], &mut state).unwrap();
         for lane in 0..4 {
             let mut own = State::new(d);
-            let mut alone = Instants::new(d, Numbers::new(d), half_step, 0);
+            let mut alone = Instants::new(d, Numbers::new(d), course, 0);
             let single = alone.at(times[lane], [beta[lane], betad[lane]], &mut own).unwrap();
             assert_eq!(single, acceleration.0[lane], "{}", d.gait);
             let mut margins = Vec::new();

@@ -2,7 +2,7 @@
 
 use crate::motions::{Random, stepping};
 use piaffe::gaits::{GAITS, amble::Amble, trot::Trot};
-use piaffe::model::{Body, Gait, Mode};
+use piaffe::model::{Body, Gait, Mode, other_leg};
 use piaffe::verify::geometry::{Plane, Space};
 use piaffe::verify::{VerifyError, impact::impact, instants::State, multibody::Multibody, numbers::Numbers};
 use piaffe::verify::{support::Support, verify};
@@ -141,7 +141,7 @@ fn a_vanishing_f1_is_found() {
     let massless = d.bodies.iter().map(|body| Body { mass: 0.0, inertia: [[0.0; 3]; 3], ..body.clone() });
     d.bodies = massless.collect();
     assert_eq!(Support::new(&d, 0).accelerate(&[0.1, -0.5, 0.2, -0.7], &[1.0; 4], &mut [0.0; 4]), None);
-    assert!(matches!(verify(&d, &stepping(&d), 0.3, 11), Err(VerifyError::Blowup { half_step: 1, time: 0.0 })));
+    assert!(matches!(verify(&d, &stepping(&d), 0.3, 11), Err(VerifyError::Blowup { phase: 1, time: 0.0 })));
 }
 
 /// Where the legs exchange their roles the robot is its own mirror image, whatever the axes of its joints.
@@ -185,7 +185,7 @@ fn impact_agrees() {
                 let numeric = impact(d, landing, &q, &qd).unwrap();
                 let generated = filled(n + np, |o| gait.impact(landing, &q, &numeric.before, o));
                 // The velocities before are those with the stance foot at rest.
-                let before = filled(np, |o| gait.platform_velocity(Mode::Stance(1 - landing), &q, &qd, o));
+                let before = filled(np, |o| gait.platform_velocity(Mode::Stance(other_leg(landing)), &q, &qd, o));
                 compare("Ẋ⁻", gait, &numeric.before[..np], &before);
                 compare("Ẋ⁺, I", gait, &[&numeric.after[..], &numeric.impulse.as_slice()[..np]].concat(), &generated);
             }

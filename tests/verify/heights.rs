@@ -62,8 +62,8 @@ fn points_that_are_taken_for_one_are_at_one_height() {
 /// What bounded the A1 at its platform's centre alone took for least torque at 0.6 m/s: its knees are 0.2 m deep.
 #[test]
 fn a_motion_with_knees_under_the_ground_is_refused_by_their_name() {
-    let half_steps = serde_json::from_str(include_str!("../fixtures/knees_under_ground.json")).unwrap();
-    let motion = Motion { half_steps };
+    let phases = serde_json::from_str(include_str!("../fixtures/knees_under_ground.json")).unwrap();
+    let motion = Motion { phases };
     let d = GAITS.iter().map(|gait| gait.description()).find(|d| d.key == "a1/bound").unwrap();
     let worst = verify(d, &motion, 0.6, 1001).unwrap().worst.unwrap();
     assert!(worst.constraint.starts_with("height of ") && worst.constraint.contains("calf"), "{worst:?}");

@@ -4,7 +4,7 @@
 
 use piaffe::gaits::{amble::Amble, curvet::Curvet, trot::Trot};
 use piaffe::model::{Description, Gait, Mode, Phase, Rotation};
-use piaffe::motion::{HalfStep, Motion};
+use piaffe::motion::{Course, Motion};
 use piaffe::verify::{impact::impact, phase};
 
 /// Length of a thigh and of a shin, m.
@@ -51,8 +51,8 @@ fn rates(feet: [[f64; 2]; 2], velocities: [[f64; 2]; 2]) -> Vec<f64> {
     moved(1.0).iter().zip(moved(-1.0)).map(|(a, b)| (a - b) / (2.0 * h)).collect()
 }
 
-/// A half step on `stance`: the platform passes over the foot while the other one swings forward.
-fn half_step(d: &Description, stance: usize, duration: f64) -> HalfStep {
+/// A course on `stance`: the platform passes over the foot while the other one swings forward.
+fn course(d: &Description, stance: usize, duration: f64) -> Course {
     let (height, reach, speed) = (0.26, 0.03, 0.3);
     let order = |s: [f64; 2], w: [f64; 2]| if stance == 0 { [s, w] } else { [w, s] };
     let begin = order([reach, -height], [-reach, -height]);
@@ -69,7 +69,7 @@ fn half_step(d: &Description, stance: usize, duration: f64) -> HalfStep {
         Rotation::Pitch => (0.0, if stance == 0 { 0.6 } else { -0.6 }),
         Rotation::Roll => (0.0, -0.5),
     };
-    HalfStep {
+    Course {
         duration,
         q_initial: choose(posture(begin)),
         qd_initial: choose(rates(begin, still)),
@@ -86,33 +86,33 @@ fn half_step(d: &Description, stance: usize, duration: f64) -> HalfStep {
 /// A motion with all its phases, not a cycle.
 pub fn stepping(d: &Description) -> Motion {
     let phase = |phase: &Phase| match phase.mode {
-        Mode::Stance(leg) => half_step(d, leg, 0.15),
-        Mode::Flight => half_step(d, 1, 0.07),
+        Mode::Stance(leg) => course(d, leg, 0.15),
+        Mode::Flight => course(d, 1, 0.07),
     };
-    Motion { half_steps: d.phases.iter().map(phase).collect() }
+    Motion { phases: d.phases.iter().map(phase).collect() }
 }
 
 /// A trot that is a cycle: initial states from the impact, T and β̇ at the end by Newton's method.
 pub fn closed_trot() -> Motion {
     let d = Trot.description();
     let build = |duration: f64, betad_final: f64| {
-        let mut half_step = half_step(d, 0, duration);
-        half_step.betad_final = betad_final;
+        let mut course = course(d, 0, duration);
+        course.betad_final = betad_final;
         let complete = |list: &[f64], beta: f64| [&[beta], list].concat();
-        let q = complete(&half_step.q_final, half_step.beta_final);
-        let after = impact(d, 1, &q, &complete(&half_step.qd_final, betad_final)).unwrap().after;
+        let q = complete(&course.q_final, course.beta_final);
+        let after = impact(d, 1, &q, &complete(&course.qd_final, betad_final)).unwrap().after;
         let renamed = |values: &[f64]| (0..4).map(|k| values[d.swapped(k).0]).collect::<Vec<_>>();
         let (q, qd) = (renamed(&q), renamed(&after[2..]));
-        (half_step.beta_initial, half_step.betad_initial) = (q[0], qd[0]);
-        (half_step.q_initial, half_step.qd_initial) = (q[1..].to_vec(), qd[1..].to_vec());
-        half_step
+        (course.beta_initial, course.betad_initial) = (q[0], qd[0]);
+        (course.q_initial, course.qd_initial) = (q[1..].to_vec(), qd[1..].to_vec());
+        course
     };
     let gap = |duration: f64, betad_final: f64| {
-        let half_step = build(duration, betad_final);
-        let end = phase::Phase::new(d, &half_step, 0, 1).unwrap().beta_end();
-        [end[0] - half_step.beta_final, end[1] - betad_final]
+        let course = build(duration, betad_final);
+        let end = phase::Phase::new(d, &course, 0, 1).unwrap().beta_end();
+        [end[0] - course.beta_final, end[1] - betad_final]
     };
-    let mut x = [0.15, half_step(d, 0, 0.15).betad_final];
+    let mut x = [0.15, course(d, 0, 0.15).betad_final];
     for _ in 0..30 {
         let h = 1e-6;
         let [g, by_t, by_rate] = [gap(x[0], x[1]), gap(x[0] + h, x[1]), gap(x[0], x[1] + h)];
@@ -123,5 +123,5 @@ pub fn closed_trot() -> Motion {
         let damping = (0.02 / step[0].abs()).min(1.0 / step[1].abs()).min(1.0);
         x = [x[0] - damping * step[0], x[1] - damping * step[1]];
     }
-    Motion { half_steps: vec![build(x[0], x[1])] }
+    Motion { phases: vec![build(x[0], x[1])] }
 }

@@ -1,6 +1,6 @@
 //! The tools of verification: polynomials, integration, quadrature.
 
-use piaffe::motion::HalfStep;
+use piaffe::motion::Course;
 use piaffe::verify::integrate::{Stop, integrate};
 use piaffe::verify::polynomial::Polynomials;
 use piaffe::verify::quadrature::{integral, integral_of_magnitude};
@@ -8,7 +8,7 @@ use piaffe::verify::quadrature::{integral, integral_of_magnitude};
 #[test]
 fn polynomials_meet_their_conditions() {
     for interior in [0, 1, 2, 3, 5] {
-        let h = HalfStep {
+        let h = Course {
             duration: 0.23,
             q_initial: vec![0.3, -0.7],
             qd_initial: vec![2.0, -5.0],

@@ -12,7 +12,7 @@ pub fn rate(f: [f64; 5], h: f64) -> f64 {
     (f[0] - 8.0 * f[1] + 8.0 * f[3] - f[4]) / (12.0 * h)
 }
 
-/// Calls `judge` with each five samples in a row of each half step.
+/// Calls `judge` with each five samples in a row of each phase.
 fn along(gait: &dyn Gait, mut judge: impl FnMut(usize, [&Sample; 5], f64)) {
     let motion = stepping(gait.description());
     let samples = sample(gait.description(), &motion, POINTS).unwrap();

@@ -29,10 +29,10 @@ fn costs_agree_with_a_brute_force_sum() {
         let points = 40_001;
         let samples = sample(d, &motion, points).unwrap();
         let (mut torque, mut energy, mut travel, mut time) = (0.0, 0.0, 0.0, 0.0);
-        for half_step in samples.chunks_exact(points) {
-            travel += half_step[points - 1].platform[0] - half_step[0].platform[0];
-            time += half_step[points - 1].t;
-            for pair in half_step.windows(2) {
+        for phase in samples.chunks_exact(points) {
+            travel += phase[points - 1].platform[0] - phase[0].platform[0];
+            time += phase[points - 1].t;
+            for pair in phase.windows(2) {
                 for s in pair {
                     let h = 0.5 * (pair[1].t - pair[0].t);
                     torque += h * s.torques.iter().map(|x| x * x).sum::<f64>();
@@ -65,18 +65,18 @@ fn a_cycle_closes_and_a_changed_rate_opens_it() {
 
     for k in 0..3 {
         let mut broken = motion.clone();
-        broken.half_steps[0].qd_initial[k] += 1e-3;
+        broken.phases[0].qd_initial[k] += 1e-3;
         let error = verify(d, &broken, speed, GRID).unwrap().cycle_error;
         assert!(error > 1e-4, "rate {k}: cycle error {error:e}");
     }
     let mut broken = motion.clone();
-    broken.half_steps[0].q_initial[1] += 1e-4;
+    broken.phases[0].q_initial[1] += 1e-4;
     assert!(verify(d, &broken, speed, GRID).unwrap().cycle_error >= 0.99e-4);
     let mut broken = motion.clone();
-    broken.half_steps[0].beta_initial += 1e-4;
+    broken.phases[0].beta_initial += 1e-4;
     assert!(verify(d, &broken, speed, GRID).unwrap().cycle_error >= 0.99e-4);
     let mut broken = motion;
-    broken.half_steps[0].duration += 1e-3;
+    broken.phases[0].duration += 1e-3;
     assert!(verify(d, &broken, speed, GRID).unwrap().cycle_error > 1e-5);
 }
 
@@ -103,7 +103,7 @@ fn limits_are_judged_at_their_place() {
         if broken {
             let finding = found(&receipt, "torque of knee1");
             assert!((finding.margin - (1.0 - 1.0 / factor)).abs() < 1e-12);
-            assert!((0.0..=motion.half_steps[0].duration).contains(&finding.time));
+            assert!((0.0..=motion.phases[0].duration).contains(&finding.time));
         }
     }
 
@@ -124,7 +124,7 @@ fn limits_are_judged_at_their_place() {
     assert!(found(&verify(&tall, &motion, base.speed, GRID).unwrap(), "platform height").margin < -0.1);
 
     let hasty = changed(&Trot, |d| d.phases.to_mut()[0].duration = [1.0, 2.0]);
-    assert!(found(&verify(&hasty, &motion, base.speed, GRID).unwrap(), "shortest half step").margin < -0.5);
+    assert!(found(&verify(&hasty, &motion, base.speed, GRID).unwrap(), "shortest phase").margin < -0.5);
 
     let stiff = changed(&Trot, |d| {
         d.joints.to_mut()[3].range = [-0.5, -0.4];
@@ -141,18 +141,16 @@ fn limits_are_judged_at_their_place() {
 fn a_foot_above_the_ground_at_the_end_is_found() {
     let d = Trot.description();
     let mut motion = closed_trot();
-    motion.half_steps[0].q_final[2] -= 0.3;
+    motion.phases[0].q_final[2] -= 0.3;
     let receipt = verify(d, &motion, 0.3, GRID).unwrap();
     assert!(receipt.max_violation > 0.01 && receipt.cycle_error > 0.1);
 }
 
 #[test]
-fn every_half_step_has_its_findings() {
+fn every_phase_has_its_findings() {
     let d = changed(&Curvet, |d| d.limits.min_vertical_force = 1e4);
     let receipt = verify(&d, &stepping(&d), 0.3, GRID).unwrap();
-    let of = |half_step| {
-        receipt.active.iter().filter(|f| f.constraint == "vertical force" && f.half_step == half_step).count()
-    };
+    let of = |phase| receipt.active.iter().filter(|f| f.constraint == "vertical force" && f.phase == phase).count();
     assert_eq!((of(1), of(2)), (1, 1));
     assert_eq!(receipt.peaks.len(), 4);
     assert!(receipt.peaks.iter().all(|p| p.torque > 0.0 && p.speed > 0.0 && p.envelope_margin < 1.0));
@@ -174,12 +172,12 @@ fn receipts_are_the_same_bits_and_survive_json() {
 fn what_cannot_be_verified_is_refused_with_a_reason() {
     let d = Trot.description();
     let good = closed_trot();
-    let refused = |change: &dyn Fn(&mut piaffe::motion::HalfStep)| {
+    let refused = |change: &dyn Fn(&mut piaffe::motion::Course)| {
         let mut motion = good.clone();
-        change(&mut motion.half_steps[0]);
+        change(&mut motion.phases[0]);
         verify(d, &motion, 0.3, GRID).unwrap_err()
     };
-    assert!(matches!(refused(&|h| h.duration = 0.0), VerifyError::Duration { half_step: 1, .. }));
+    assert!(matches!(refused(&|h| h.duration = 0.0), VerifyError::Duration { phase: 1, .. }));
     assert!(matches!(refused(&|h| h.duration = f64::NAN), VerifyError::Duration { .. }));
     assert!(matches!(refused(&|h| h.q_interior[0].truncate(1)), VerifyError::Length { expected: 3, found: 1, .. }));
     assert!(matches!(refused(&|h| h.qd_final[0] = f64::INFINITY), VerifyError::NotFinite { .. }));
@@ -191,9 +189,9 @@ fn what_cannot_be_verified_is_refused_with_a_reason() {
     assert_eq!(of_speed(f64::NAN), "the speed must be finite and not zero, not NaN m/s");
     assert_eq!(of_speed(0.0), "the speed must be finite and not zero, not 0 m/s");
     assert_eq!(verify(d, &good, 0.3, 2), Err(VerifyError::Grid(2)));
-    let two = piaffe::motion::Motion { half_steps: [&good.half_steps[..], &good.half_steps[..]].concat() };
+    let two = piaffe::motion::Motion { phases: [&good.phases[..], &good.phases[..]].concat() };
     let message = verify(d, &two, 0.3, GRID).unwrap_err().to_string();
-    assert_eq!(message, "the trot is defined by 1 half step(s), the motion has 2");
+    assert_eq!(message, "the trot is defined by 1 phase(s), the motion has 2");
 }
 
 #[test]
@@ -203,7 +201,7 @@ fn wild_motions_end_in_a_receipt_or_a_reason() {
         let d = gait.description();
         for size in [0.1, 1.0, 10.0, 1e3, 1e8] {
             let mut motion = stepping(d);
-            for h in &mut motion.half_steps {
+            for h in &mut motion.phases {
                 let interior = h.q_interior.iter_mut().flatten();
                 let lists = [&mut h.q_initial, &mut h.qd_initial, &mut h.q_final, &mut h.qd_final];
                 for x in lists.into_iter().flatten().chain(interior) {

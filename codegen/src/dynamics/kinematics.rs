@@ -71,7 +71,7 @@ impl Kinematics {
             platform = platform.turned(ring, axis.index(), theta);
         }
         let planar = |mut v: Vec3| {
-            if !mechanism.lateral {
+            if !mechanism.rotation.is_spatial() {
                 v[2] = Poly::zero();
             }
             v

@@ -236,7 +236,7 @@ impl Model {
         self.ring.substitute(p, &map)
     }
 
-    /// Components that reactions and feet have: x, y and, for a lateral gait, z.
+    /// Components that reactions and feet have: x, y and, where the platform rolls, z.
     pub fn components(&self, v: &Vec3) -> Vec<Poly> {
         v[..self.mechanism.positions()].to_vec()
     }

@@ -27,7 +27,7 @@ pub fn description(
         Then::Mirrored => quote!(Mirrored),
         Then::Repeat => quote!(Repeat),
     };
-    let (gait, robot, lateral, gravity) = (&m.gait, &m.robot, m.lateral, float(m.gravity)?);
+    let (gait, robot, gravity) = (&m.gait, &m.robot, float(m.gravity)?);
     let (bodies, joints) = (each(&m.bodies, |b| body(b, runtime))?, each(&m.joints, |j| joint(j, runtime))?);
     let (legs, limits) = (each(&m.legs, |l| leg(l, runtime))?, limits(&m.limits, runtime)?);
     let (unactuated, order) = (whole(m.unactuated), whole(m.polynomial_order));
@@ -42,7 +42,6 @@ pub fn description(
             gait: #gait,
             robot: #robot,
             gravity: #gravity,
-            lateral: #lateral,
             rotation: #runtime::Rotation::#rotation,
             phases: std::borrow::Cow::Borrowed(&[#(#phases),*]),
             then: #runtime::Then::#then,

@@ -14,7 +14,7 @@ mod transition;
 pub use embedding::{Member, VirtualLeg};
 pub use family::Family;
 pub use lever::{Lever, levers};
-pub use mode::{Mode, Phase};
+pub use mode::{Mode, Phase, other_leg};
 pub use parameter::{Parameter, Sign, parameters, select, with};
 pub use points::{Point, Spot, points};
 pub use robot::{Body, Whole, WholeJoint, WholeLeg};
@@ -29,8 +29,6 @@ pub struct Mechanism {
     pub robot: String,
     /// m/s², along −y.
     pub gravity: f64,
-    /// Whether the platform moves along z as well as x and y.
-    pub lateral: bool,
     pub rotation: Rotation,
     /// The platform, then of each virtual leg its links from the platform down, those that move alike put together.
     pub bodies: Vec<Body>,
@@ -82,7 +80,6 @@ impl Mechanism {
             gait: gait.name.clone(),
             robot: robot.name.clone(),
             gravity: robot.gravity,
-            lateral: gait.lateral,
             rotation: gait.rotation,
             bodies,
             corners: points::corners(&robot.platform),
@@ -153,7 +150,7 @@ impl Mechanism {
 
     /// Number of position coordinates p (and of reaction components).
     pub fn positions(&self) -> usize {
-        if self.lateral { 3 } else { 2 }
+        if self.rotation.is_spatial() { 3 } else { 2 }
     }
 
     /// Number of joint and orientation coordinates q.

@@ -13,6 +13,11 @@ pub enum Mode {
     Flight,
 }
 
+/// The leg beside this one (0 or 1).
+pub const fn other_leg(leg: usize) -> usize {
+    1 - leg
+}
+
 impl Mode {
     /// Legs whose feet are in the air.
     pub fn swinging(self) -> impl Iterator<Item = usize> + Clone {
@@ -22,7 +27,7 @@ impl Mode {
     /// The same when the legs have exchanged roles.
     pub fn exchanged(self) -> Mode {
         match self {
-            Mode::Stance(leg) => Mode::Stance(1 - leg),
+            Mode::Stance(leg) => Mode::Stance(other_leg(leg)),
             Mode::Flight => Mode::Flight,
         }
     }

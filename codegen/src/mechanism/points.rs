@@ -1,10 +1,10 @@
 //! What must stay above the ground: all joints of the real legs, locked ones too, and the corners of the platform's extent.
 //!
-//! Feet are the exception. A link ends in the next joint or in the foot, so its ends are among the points. In a gait of mirrored
-//! half steps every leg takes the part of its counterpart, and where the platform rolls the robot is mirrored with it: there
+//! Feet are the exception. A link ends in the next joint or in the foot, so its ends are among the points. In a mirrored
+//! gait every leg takes the part of its counterpart, and where the platform rolls the robot is mirrored with it: there
 //! points count on both virtual legs, and corners on both sides.
 
-use super::{Mechanism, Member};
+use super::{Mechanism, Member, other_leg};
 use crate::spec::{Leg, Platform, Robot, Rotation, Then};
 
 /// A point of a body.
@@ -84,7 +84,7 @@ pub fn points(m: &Mechanism) -> Vec<Point> {
         add(None, &m.corners, 0, true);
     }
     for leg in 0..2 {
-        for (of, image) in [(leg, false), (1 - leg, true)].into_iter().filter(|(_, image)| exchanged || !image) {
+        for (of, image) in [(leg, false), (other_leg(leg), true)].into_iter().filter(|(_, image)| exchanged || !image) {
             for (k, member) in m.legs[of].members.iter().enumerate() {
                 add(Some((of, k)), &member.spots, leg, image);
             }

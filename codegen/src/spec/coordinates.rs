@@ -26,18 +26,18 @@ pub(super) fn single(root: &View<'_>, sink: &mut Sink) -> Option<At<String>> {
     }
 }
 
-/// Whether the platform moves sideways: it does where it rolls, about a foot beside it.
-pub(super) fn lateral(raw: &RawGait, sink: &mut Sink) -> Option<bool> {
+/// The directions in which the platform moves go with its rotation.
+pub(super) fn check_moves(raw: &RawGait, sink: &mut Sink) -> Option<()> {
     let moves = raw.moves.as_ref()?;
     let rotation = raw.rotation.as_ref()?;
-    let lateral = rotation.value == Rotation::Roll;
-    let wanted: &[usize] = if lateral { &[0, 1, 2] } else { &[0, 1] };
+    let spatial = rotation.value.is_spatial();
+    let wanted: &[usize] = if spatial { &[0, 1, 2] } else { &[0, 1] };
     let mut given = moves.value.clone();
     given.sort_unstable();
     if given == wanted {
-        return Some(lateral);
+        return Some(());
     }
-    let (title, help) = if lateral {
+    let (title, help) = if spatial {
         ("a platform that rolls moves in x, y and z", "write moves = [\"x\", \"y\", \"z\"], or rotates = \"pitch\"")
     } else {
         ("a platform that does not roll moves in x and y", "write moves = [\"x\", \"y\"], or rotates = \"roll\"")

@@ -67,7 +67,7 @@ fn read(path: &str, text: &str, robot: &RobotFile, sink: &mut Sink) -> Option<Ga
     let phases = phases::phases(&raw, &root.key_span("phases"), sink);
 
     let locked = if root.has("locked") { root.angles("locked", sink) } else { Some(Vec::new()) };
-    let lateral = coordinates::lateral(&raw, sink);
+    let moves = coordinates::check_moves(&raw, sink);
     // From here on the robot is one without its locked joints.
     let robot = &locked::with_locked(locked.as_deref()?, robot, sink)?;
     let virtual_legs = pairing::virtual_legs(&raw, &root.key_span("virtual_legs"), robot, sink);
@@ -76,11 +76,11 @@ fn read(path: &str, text: &str, robot: &RobotFile, sink: &mut Sink) -> Option<Ga
         coordinates::check_plane(&raw, robot, sink);
         mirror::check(&raw, legs, robot, sink);
     }
+    moves?;
     Some(Gait {
         name: name?,
         virtual_legs: virtual_legs?,
         locked: locked?.into_iter().map(|(name, angle)| (name.value, angle)).collect(),
-        lateral: lateral?,
         rotation: raw.rotation?.value,
         unactuated: unactuated?,
         phases: phases?,

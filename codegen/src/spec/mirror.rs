@@ -1,4 +1,4 @@
-//! Whether the two half steps of a gait can mirror each other, so that one of them defines the gait: where
+//! Whether the two halves of a cycle can mirror each other, so that one of them defines the gait: where
 //! the virtual legs exchange their roles, one must be for the other what it is itself, or its mirror image.
 
 use super::Code;
@@ -11,7 +11,7 @@ use super::phases::Written;
 use super::robot::RobotFile;
 use super::types::Then;
 
-/// Mirrored half steps: the virtual legs are alike and their hips at the same place; where the platform
+/// Mirrored halves: the virtual legs are alike and their hips at the same place; where the platform
 /// rolls, they are mirror images.
 pub(super) fn check(raw: &RawGait, legs: &[Vec<usize>; 2], robot: &RobotFile, sink: &mut Sink) {
     let (Some(then), Some(rotation)) = (&raw.then, &raw.rotation) else {

@@ -97,7 +97,6 @@ fn the_shipped_gaits() {
         name: name.into(),
         virtual_legs,
         locked: Vec::new(),
-        lateral: rotation == Rotation::Roll,
         rotation,
         unactuated,
         phases: Phases::half_steps(then, [0.05, longest]),

@@ -154,8 +154,6 @@ pub struct Gait {
     pub virtual_legs: [Vec<usize>; 2],
     /// Joints that the gait holds at an angle, by name; rad.
     pub locked: Vec<(String, f64)>,
-    /// Whether the platform also moves sideways (z).
-    pub lateral: bool,
     pub rotation: Rotation,
     pub unactuated: Unactuated,
     /// In the order in which they follow each other.
@@ -176,6 +174,11 @@ pub enum Rotation {
 }
 
 impl Rotation {
+    /// Whether the platform also moves sideways (z): it does where it rolls, about a foot beside it.
+    pub const fn is_spatial(self) -> bool {
+        matches!(self, Rotation::Roll)
+    }
+
     /// Why a robot whose platform rotates like this cannot fly, if it cannot.
     pub const fn keeps_on_the_ground(self) -> Option<&'static str> {
         match self {

@@ -8,7 +8,7 @@ use super::robots::Draws;
 use super::state::State;
 use super::support::{largest, prescribed, with_foot_at_rest};
 use piaffe_codegen::expr::Poly;
-use piaffe_codegen::mechanism::{Mechanism, Mode};
+use piaffe_codegen::mechanism::{Mechanism, Mode, other_leg};
 use piaffe_codegen::spec::Rotation;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -183,7 +183,7 @@ pub fn take_off(d: &Derived, s: &State, leg: usize) {
 pub fn landing(d: &Derived, s: &State, leg: usize) {
     let positions = d.mechanism().positions();
     let name = |what: &str| format!("{what}{}", leg + 1);
-    for xd in [s.xd.clone(), with_foot_at_rest(d, 1 - leg, s)] {
+    for xd in [s.xd.clone(), with_foot_at_rest(d, other_leg(leg), s)] {
         let found = landed(d, s, leg, &xd);
         let expected = d.run(&name("impact"), &[&s.q, &xd]);
         assert_close("q̇⁺", found.get("qd_plus"), &expected.get("xd_plus")[positions..], 1e-9);
@@ -193,7 +193,7 @@ pub fn landing(d: &Derived, s: &State, leg: usize) {
         assert_close("landing foot", found.get("landing"), &foot[1..2], 1e-11);
     }
     let touchdown = d.run(&name("touchdown"), &[&s.q, &s.qd]);
-    let found = landed(d, s, leg, &with_foot_at_rest(d, 1 - leg, s));
+    let found = landed(d, s, leg, &with_foot_at_rest(d, other_leg(leg), s));
     assert_close(
         "touchdown",
         found.get("qd_plus"),

@@ -5,7 +5,7 @@ use super::numbers::assert_close;
 use super::robots::Draws;
 use super::state::State;
 use piaffe_codegen::dynamics::lowest;
-use piaffe_codegen::mechanism::{Mechanism, levers, points};
+use piaffe_codegen::mechanism::{Mechanism, levers, other_leg, points};
 use piaffe_codegen::spec::{Axis, Extent, Gait, Robot, Rotation, Then};
 
 type Matrix = [[f64; 3]; 3];
@@ -85,7 +85,7 @@ fn compare(robot: &Robot, gait: &Gait, draws: &mut Draws) {
             let found = d.run(&format!("heights{}", leg + 1), &[&s.q]);
             let mut expected = real(robot, gait, &s.q, leg);
             if gait.phases.then == Then::Mirrored {
-                expected.extend(real(robot, gait, &exchanged(m, &s.q), 1 - leg));
+                expected.extend(real(robot, gait, &exchanged(m, &s.q), other_leg(leg)));
             }
             let least = |list: &[f64]| list.iter().copied().fold(f64::INFINITY, f64::min);
             assert_close("lowest", &[least(found.get("heights"))], &[least(&expected)], 1e-12);

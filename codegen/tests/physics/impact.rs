@@ -4,6 +4,7 @@ use super::common::Derived;
 use super::numbers::{along, assert_close, product, transposed_product};
 use super::state::State;
 use super::support::{largest, with_foot_at_rest};
+use piaffe_codegen::mechanism::other_leg;
 
 fn kinetic(d: &Derived, s: &State, xd: &[f64]) -> f64 {
     d.run("energy", &[&s.x, xd]).number("kinetic")
@@ -40,12 +41,12 @@ pub fn one_foot(d: &Derived, s: &State, leg: usize) {
     assert!(lost >= -1e-9 * kinetic(d, s, &s.xd), "energy lost: {lost}");
 
     // As the end of a single support on the other foot.
-    let before = with_foot_at_rest(d, 1 - leg, s);
+    let before = with_foot_at_rest(d, other_leg(leg), s);
     let expected = d.run(&name, &[&s.q, &before]);
     let found = d.run(&format!("touchdown{}", leg + 1), &[&s.q, &s.qd]);
     assert_close("touchdown q̇⁺", found.get("qd_plus"), &expected.get("xd_plus")[positions..], 1e-9);
     assert_close("touchdown impulse", found.get("impulse"), expected.get("impulse"), 1e-9);
-    let leaving = foot_velocity(d, s, 1 - leg, expected.get("xd_plus"))[1];
+    let leaving = foot_velocity(d, s, other_leg(leg), expected.get("xd_plus"))[1];
     assert_close("leaving foot", found.get("leaving"), &[leaving], 1e-9);
     assert_close("landing foot", found.get("landing"), &[foot_velocity(d, s, leg, &before)[1]], 1e-11);
 }

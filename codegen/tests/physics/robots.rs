@@ -178,7 +178,6 @@ pub fn specification(build: &Build, draws: &mut Draws) -> (Robot, Gait) {
         name: "random".into(),
         virtual_legs: [(0..build.members).collect(), (build.members..2 * build.members).collect()],
         locked: Vec::new(),
-        lateral: build.rotation == Rotation::Roll,
         rotation: build.rotation,
         unactuated,
         phases: Phases::half_steps(Then::Repeat, [0.1, 1.0]),

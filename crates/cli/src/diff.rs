@@ -53,7 +53,7 @@ fn tell(names: &Pair<String>, results: &Pair<GaitResult>, d: &Difference) -> io:
         predicted(&mut out, prediction, results.a.criterion.unit())?;
     }
     let durations = |list: &[f64]| list.iter().map(|t| decimal(*t, 4)).collect::<Vec<_>>().join("/");
-    writeln!(out, "half steps      {} → {} s", durations(&d.durations.a), durations(&d.durations.b))?;
+    writeln!(out, "phases          {} → {} s", durations(&d.durations.a), durations(&d.durations.b))?;
     active(&mut out, d)?;
     for (k, slope) in d.slopes.iter().take(SLOPES).enumerate() {
         let head = if k == 0 { "slopes" } else { "" };
@@ -102,7 +102,7 @@ fn signed(number: f64) -> String {
 fn active(out: &mut impl Write, d: &Difference) -> io::Result<()> {
     let of = |a: bool, b: bool| {
         let with = d.limits.iter().filter(move |room| (room.margins.a.is_some(), room.margins.b.is_some()) == (a, b));
-        with.map(|room| format!("{} (half step {})", room.constraint, room.half_step)).collect::<Vec<_>>().join(", ")
+        with.map(|room| format!("{} (phase {})", room.constraint, room.phase)).collect::<Vec<_>>().join(", ")
     };
     let groups = [("in both", of(true, true)), ("in A only", of(true, false)), ("in B only", of(false, true))];
     let mut head = "active";

@@ -9,7 +9,7 @@ use std::path::Path;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Format {
-    /// A row per moment, a column per number; the row that ends a half step has the impulses.
+    /// A row per moment, a column per number; the row that ends a phase has the impulses.
     Csv,
     /// The same, with the impacts by themselves.
     Json,

@@ -23,7 +23,10 @@ const FLYING: f64 = 1.0;
 /// expects no other optimum.
 const STARTS_FLYING: usize = 8;
 
-/// Cost and half-step durations that the paper reports.
+/// Heading of the phases' durations.
+const DURATIONS: &str = "phases, s";
+
+/// Cost and phase durations that the paper reports.
 struct Published {
     gait: &'static str,
     criterion: Criterion,
@@ -104,7 +107,7 @@ impl Table {
     fn fill(&self, folder: &Path, records: &mut Vec<Record<'static>>) -> anyhow::Result<String> {
         let (names, steps) = self.widths();
         let paper =
-            if self.published.is_empty() { String::new() } else { format!("  {:>10} {:<12}", "paper", "half steps") };
+            if self.published.is_empty() { String::new() } else { format!("  {:>10} {:<12}", "paper", "phases") };
         output::say!(
             "{:<names$} {:<9} {:>10} {:<7} {:>6} {:<steps$} {:>9} {:>9} {:>9}{paper} active  between    real legs",
             "gait",
@@ -112,7 +115,7 @@ impl Table {
             "cost",
             "unit",
             "E/mgd",
-            self.durations(),
+            DURATIONS,
             "violation",
             "cycle",
             "KKT",
@@ -139,17 +142,12 @@ impl Table {
         Ok(if fewest == most { most.to_string() } else { format!("{fewest} to {most}") })
     }
 
-    /// Of a half step of a walk, of a phase of a run.
-    fn durations(&self) -> &'static str {
-        if self.gaits.iter().any(|g| g.description().flies()) { "phases, s" } else { "half steps, s" }
-    }
-
     /// Columns of the gaits' names and of the durations.
     fn widths(&self) -> (usize, usize) {
         const DURATION: usize = "0.0123/".len();
         let descriptions = || self.gaits.iter().map(|g| g.description());
         let names = descriptions().map(|d| d.gait.len()).fold("gait".len(), usize::max);
-        (names, descriptions().map(|d| d.phases.len() * DURATION).fold(self.durations().len(), usize::max))
+        (names, descriptions().map(|d| d.phases.len() * DURATION).fold(DURATIONS.len(), usize::max))
     }
 
     fn row(&self, record: &Record) -> std::io::Result<()> {

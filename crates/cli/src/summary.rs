@@ -17,13 +17,13 @@ fn rev_per_min(joint_speed: f64, gear: f64) -> f64 {
 /// A certificate in a line.
 fn standing(c: &Certificate) -> String {
     if c.is_certified() {
-        let pieces: usize = c.half_steps.iter().map(|h| h.evaluations).sum();
+        let pieces: usize = c.phases.iter().map(|h| h.evaluations).sum();
         return format!("certified: at no time is a margin below -{:.0e} (proven on {pieces} pieces)", c.tolerance);
     }
     let gaps = c.gaps.iter().map(|gap| {
         let verdict = if gap.violated { "broken" } else { "unproven" };
         let [from, to] = [gap.from, gap.to].map(|t| decimal(t, 6));
-        format!("{} {verdict} in half step {} from {from} to {to} s", gap.constraint, gap.half_step)
+        format!("{} {verdict} in phase {} from {from} to {to} s", gap.constraint, gap.phase)
     });
     let open = c.cycle_error.is_none_or(|error| error > c.tolerance).then(|| "cycle not proven to close".to_string());
     format!("sampled: {}", gaps.chain(open).collect::<Vec<_>>().join("\n                  "))
@@ -63,7 +63,7 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
             } else {
                 "in the way".into()
             };
-            writeln!(out, "  {:<34} half step {}, t = {} s: {what}", c.constraint, c.half_step, decimal(c.time, 3))?;
+            writeln!(out, "  {:<34} phase {}, t = {} s: {what}", c.constraint, c.phase, decimal(c.time, 3))?;
         }
     }
     if r.status == Status::Infeasible {
@@ -89,7 +89,7 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
     }
     if let Some(step) = r.step_length {
         let durations: Vec<String> = r.durations.iter().map(|t| format!("{} s", decimal(*t, 4))).collect();
-        writeln!(out, "  half steps      {}", durations.join(" + "))?;
+        writeln!(out, "  phases          {}", durations.join(" + "))?;
         if let Some(least) = shortest_flight(description, r) {
             let without = match grounded {
                 None => "the gait without it may cost less".into(),
@@ -124,7 +124,7 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
     if let Some(receipt) = &r.receipt {
         writeln!(
             out,
-            "  receipt         largest violation {:.1e}, cycle error {:.1e}, KKT residual {} ({} points per half step)",
+            "  receipt         largest violation {:.1e}, cycle error {:.1e}, KKT residual {} ({} points per phase)",
             receipt.max_violation,
             receipt.cycle_error,
             receipt.kkt_residual.map_or("unknown".into(), |kkt| format!("{kkt:.1e}")),
@@ -136,7 +136,7 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
         let active: Vec<String> = receipt
             .findings
             .iter()
-            .map(|f| format!("{} (half step {}, t = {} s)", f.constraint, f.half_step, decimal(f.time, 3)))
+            .map(|f| format!("{} (phase {}, t = {} s)", f.constraint, f.phase, decimal(f.time, 3)))
             .collect();
         writeln!(
             out,
@@ -146,9 +146,9 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
         if let Some(worst) = receipt.worst.as_ref().filter(|_| r.status != Status::Optimal) {
             writeln!(
                 out,
-                "  worst           {} (half step {}, t = {} s): {:.2e}",
+                "  worst           {} (phase {}, t = {} s): {:.2e}",
                 worst.constraint,
-                worst.half_step,
+                worst.phase,
                 decimal(worst.time, 3),
                 worst.margin
             )?;
@@ -184,7 +184,7 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
     }
     writeln!(out, "  search          {}", confidence(r))?;
     if r.local_optima.len() > 1 {
-        writeln!(out, "  local optima    (cost, half steps, how many starts led there)")?;
+        writeln!(out, "  local optima    (cost, phases, how many starts led there)")?;
         for o in &r.local_optima {
             let durations: Vec<String> = o.durations.iter().map(|t| decimal(*t, 3)).collect();
             writeln!(out, "    {:>12}  {}  {}", decimal(o.cost, 4), durations.join("/"), o.reached)?;

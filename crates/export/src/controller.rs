@@ -1,7 +1,7 @@
 //! A gait as the polynomials that a controller follows (eq. 15).
 
 use super::table::{coordinates, real_joints};
-use piaffe_model::motion::{HalfStep, Motion};
+use piaffe_model::motion::{Course, Motion};
 use piaffe_model::{Description, Gait, Then};
 use piaffe_optimizer::trajectory::Basis;
 use serde::Serialize;
@@ -16,7 +16,7 @@ pub struct Controller {
     pub mirrored: bool,
     /// The real legs of both virtual legs.
     pub legs: [Vec<String>; 2],
-    pub half_steps: Vec<Program>,
+    pub phases: Vec<Program>,
 }
 
 /// One phase.
@@ -62,13 +62,13 @@ pub fn controller(gait: &dyn Gait, motion: &Motion) -> Controller {
         let (phase, exchanged) = (h % count, h >= count);
         let mode = d.phases[phase].mode;
         let stance = if exchanged { mode.exchanged() } else { mode }.stance();
-        program(d, &motion.half_steps[phase], exchanged, stance.map_or(&[], |leg| &legs[leg]))
+        program(d, &motion.phases[phase], exchanged, stance.map_or(&[], |leg| &legs[leg]))
     };
-    let half_steps = (0..if mirrored { 2 * count } else { count }).map(of_phase).collect();
-    Controller { gait: d.gait.into(), robot: d.robot.into(), fingerprint: d.fingerprint(), mirrored, half_steps, legs }
+    let phases = (0..if mirrored { 2 * count } else { count }).map(of_phase).collect();
+    Controller { gait: d.gait.into(), robot: d.robot.into(), fingerprint: d.fingerprint(), mirrored, phases, legs }
 }
 
-fn program(d: &Description, h: &HalfStep, exchanged: bool, stance: &[String]) -> Program {
+fn program(d: &Description, h: &Course, exchanged: bool, stance: &[String]) -> Program {
     let names = coordinates(d);
     let joints = |k: usize| real_joints(d).filter(|(of, _)| *of == k).map(|(_, name)| name.into()).collect();
     // Where the legs have exchanged their roles, a coordinate does what its counterpart did.
@@ -98,7 +98,7 @@ fn program(d: &Description, h: &HalfStep, exchanged: bool, stance: &[String]) ->
 }
 
 /// Coefficients of tⁱ of the j-th prescribed coordinate.
-fn coefficients(basis: &Basis, h: &HalfStep, j: usize) -> Vec<f64> {
+fn coefficients(basis: &Basis, h: &Course, j: usize) -> Vec<f64> {
     let inner = h.q_interior.iter().map(|values| values[j]);
     let start = [h.q_initial[j], h.duration * h.qd_initial[j]];
     let end = [h.q_final[j], h.duration * h.qd_final[j]];

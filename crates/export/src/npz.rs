@@ -6,7 +6,7 @@ use std::io::{Cursor, Write};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
-/// Arrays by name, over the moments: `t` (n), `half_step`, `stance` (n; 1 or 2), `p`, `pd`, `pdd` (n × 3: the platform's
+/// Arrays by name, over the moments: `t` (n), `phase`, `stance` (n; 1 or 2), `p`, `pd`, `pdd` (n × 3: the platform's
 /// mass centre), `q`, `qd`, `qdd` (n × coordinates), `torque` (n × joints), `force` (n × 3), `feet` (n × legs × 3), for each
 /// real leg `chain_NAME` (n × points × 3: its joints from the platform down, and its foot); and the names `coordinates`, `joints` (of the virtual legs), `legs`, `real_joints`, and of each of the last the index of the coordinate
 /// that it follows (`real_joint_of`). SI units, rad.
@@ -23,7 +23,7 @@ pub fn npz(walk: &Walk) -> std::io::Result<Vec<u8>> {
         archive.put(name, "<f8", &shape, &values)
     };
     put("t", &[], &|m| vec![m.time])?;
-    put("half_step", &[], &|m| vec![(m.phase + 1) as f64])?;
+    put("phase", &[], &|m| vec![(m.phase + 1) as f64])?;
     put("stance", &[], &|m| vec![m.mode.stance().map_or(0.0, |leg| (leg + 1) as f64)])?;
     for (k, name) in ["p", "pd", "pdd"].into_iter().enumerate() {
         put(name, &[3], &|m| m.platform[k].to_vec())?;

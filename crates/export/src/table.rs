@@ -27,7 +27,7 @@ pub fn legs(d: &Description) -> impl Iterator<Item = (usize, usize, &'static str
 }
 
 fn header(d: &Description) -> Vec<String> {
-    let mut names: Vec<String> = ["t", "half_step", "stance"].map(str::to_string).to_vec();
+    let mut names: Vec<String> = ["t", "phase", "stance"].map(str::to_string).to_vec();
     for of in ["", "d", "dd"] {
         names.extend(["x", "y", "z"].map(|axis| format!("{axis}{of}")));
     }

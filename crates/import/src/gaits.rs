@@ -199,7 +199,7 @@ fn text(robot: &Robot, plan: &Plan, halves: &str, clearance: f64) -> String {
     )
 }
 
-/// Half a cycle where half steps mirror each other, else all of it.
+/// Half a cycle where its halves mirror each other, else all of it.
 fn phases(halves: &str, flights: Flights, stance: &str, flight: &str) -> String {
     let phase =
         |stance: &str, duration: &str| format!("\n[[phases]]\nstance = [{stance}]\nduration = {duration}  # s\n");

@@ -14,7 +14,6 @@ pub fn description(m: &Mechanism, key: &str, derived: &Derived) -> Description {
         gait: text(&m.gait),
         robot: text(&m.robot),
         gravity: m.gravity,
-        lateral: m.lateral,
         rotation: match m.rotation {
             spec::Rotation::None => Rotation::None,
             spec::Rotation::Pitch => Rotation::Pitch,

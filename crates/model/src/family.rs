@@ -52,7 +52,7 @@ pub enum Unfit {
          two, but it is {inertia:?} kg·m²"
     )]
     Inertia { body: &'static str, inertia: [[f64; 3]; 3] },
-    #[error("the half steps of the {gait} mirror each other, but {first} and {second} are no mirror images")]
+    #[error("the halves of the {gait} mirror each other, but {first} and {second} are no mirror images")]
     Mirror { gait: &'static str, first: &'static str, second: &'static str },
 }
 
@@ -202,7 +202,7 @@ impl Description {
         Ok(())
     }
 
-    /// Where the half steps mirror each other, so must the legs: across the sagittal plane if the platform
+    /// Where the halves of a cycle mirror each other, so must the legs: across the sagittal plane if the platform
     /// rolls, else as seen from the side.
     fn check_mirror(&self) -> Result<(), Unfit> {
         if self.then == Then::Repeat {

@@ -32,8 +32,6 @@ pub struct Description {
     pub robot: &'static str,
     /// m/s², along −Yf.
     pub gravity: f64,
-    /// Whether p has a z.
-    pub lateral: bool,
     pub rotation: Rotation,
     /// What the gait does, in the order in which it does it.
     pub phases: Cow<'static, [Phase]>,
@@ -73,6 +71,12 @@ pub enum Rotation {
     Roll,
 }
 
+/// The leg beside this one (0 or 1).
+#[inline]
+pub const fn other_leg(leg: usize) -> usize {
+    1 - leg
+}
+
 /// A contact mode: what stands on the ground. The unit for which dynamics are derived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
@@ -94,7 +98,7 @@ impl Mode {
     /// The same when the legs have exchanged roles.
     pub fn exchanged(self) -> Mode {
         match self {
-            Mode::Stance(leg) => Mode::Stance(1 - leg),
+            Mode::Stance(leg) => Mode::Stance(other_leg(leg)),
             Mode::Flight => Mode::Flight,
         }
     }
@@ -240,8 +244,8 @@ pub struct Spot {
     pub at: [f64; 3],
 }
 
-/// A spot as a part of the gait: what moves it. Where half steps mirror each other a leg also takes the part of its
-/// counterpart, and where the platform rolls it does so as its own mirror image.
+/// A spot as a part of the gait: what moves it. Where the halves of a cycle mirror each other a leg also takes the part of
+/// its counterpart, and where the platform rolls it does so as its own mirror image.
 #[derive(Clone, Copy, Debug)]
 pub struct Point {
     /// As reports show it.
@@ -313,7 +317,11 @@ impl Description {
     /// Tells one robot and gait from another: a hash of all that describes them. How their kernels are written is no part of it.
     pub fn fingerprint(&self) -> String {
         let described = Description { shapes: &shape::Shapes::NONE, operations: &[], ..self.clone() };
-        format!("{:016x}", hash(&format!("{described:?}")))
+        // Whether it is spatial was a field of its own before the rotation. It is told as ever, so that a robot has the
+        // fingerprint that it always had.
+        let rotation = format!("rotation: {:?}, ", self.rotation);
+        let ever = format!("lateral: {}, {rotation}", self.is_spatial());
+        format!("{:016x}", hash(&format!("{described:?}").replacen(&rotation, &ever, 1)))
     }
 
     /// Whether it is a gait of the build's first robot, which the command line needs no name for.
@@ -326,9 +334,14 @@ impl Description {
         self.joints.len()
     }
 
+    /// Whether it moves in space: p has a z where the platform rolls. Else it stays in the sagittal plane.
+    pub fn is_spatial(&self) -> bool {
+        self.rotation == Rotation::Roll
+    }
+
     /// Number of position coordinates p, and of components of a reaction.
     pub fn positions(&self) -> usize {
-        if self.lateral { 3 } else { 2 }
+        if self.is_spatial() { 3 } else { 2 }
     }
 
     /// Number of coordinates q: joints, then θ where the platform rotates.
@@ -390,7 +403,7 @@ impl Description {
     pub fn transition(&self, k: usize) -> Transition {
         match (self.phases[k].mode, self.mode(k as isize + 1)) {
             (Mode::Stance(leg), Mode::Flight) => Transition::TakeOff(leg),
-            (Mode::Stance(from), to) => Transition::Touchdown(to.stance().unwrap_or(1 - from)),
+            (Mode::Stance(from), to) => Transition::Touchdown(to.stance().unwrap_or(other_leg(from))),
             (Mode::Flight, to) => Transition::Landing(to.stance().unwrap_or_default()),
         }
     }

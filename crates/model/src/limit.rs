@@ -2,6 +2,8 @@
 //!
 //! Optimizer, verifier and reports speak of one thing by one name, and a name leads back to its limit.
 
+use serde::{Deserialize, Deserializer};
+
 macro_rules! limits {
     ($($limit:ident = $name:literal,)*) => {
         /// A limit or condition of the program that a motion solves, apart from the joint, leg or point that it is of.
@@ -32,8 +34,8 @@ limits! {
     ClearanceOfFoot = "swing clearance of …",
     PlatformHeight = "platform height",
     Height = "height of …",
-    ShortestHalfStep = "shortest half step",
-    LongestHalfStep = "longest half step",
+    ShortestPhase = "shortest phase",
+    LongestPhase = "longest phase",
     VerticalImpulse = "vertical impulse",
     ImpulseFriction = "friction of the impulse",
     ImpulseFrictionOfFoot = "friction of the impulse on a real foot",
@@ -44,7 +46,28 @@ limits! {
     ClosureOfSigma = "closure of σ",
     Pitching = "pitching at the impact on real feet",
     Still = "… held still",
-    Duration = "duration of the half step",
+    Duration = "duration of the phase",
+}
+
+/// Words of an older build in those of this one. Before gaits had flights, a phase was called a half step.
+pub fn current(words: &str) -> String {
+    words.replace("half step", "phase")
+}
+
+/// Reads the name of a limit, from an older build's result too.
+///
+/// # Errors
+/// If it is no text.
+pub fn name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+    Ok(current(&String::deserialize(deserializer)?))
+}
+
+/// Reads a list of such names.
+///
+/// # Errors
+/// If it is no list of texts.
+pub fn names<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<String>, D::Error> {
+    Ok(Vec::<String>::deserialize(deserializer)?.iter().map(|name| current(name)).collect())
 }
 
 /// Where a name says what it is of.

@@ -2,28 +2,30 @@
 
 use serde::{Deserialize, Serialize};
 
-/// One step of a gait: one half step where the second mirrors it, else two.
+/// The phases of a gait in their order: half of its cycle where the other half mirrors them, else all of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Motion {
-    pub half_steps: Vec<HalfStep>,
+    #[serde(alias = "half_steps")]
+    pub phases: Vec<Course>,
 }
 
 impl Motion {
-    /// Of each half step, s.
+    /// Of each phase, s.
     pub fn durations(&self) -> impl Iterator<Item = f64> {
-        self.half_steps.iter().map(|half_step| half_step.duration)
+        self.phases.iter().map(|course| course.duration)
     }
 }
 
-/// A single support phase. Q are the prescribed coordinates in the order of q without β.
+/// The course of one phase, be it single support or flight: the numbers that define Q(t) during it. Q are the prescribed
+/// coordinates in the order of q without β.
 ///
 /// Q(t) is the polynomial (eq. 15) with these initial and final values and rates that passes through
 /// the interior values at equally spaced times (one at T/2 for order 4, three at T/4, T/2, 3T/4 for
-/// order 6, five for order 8). Initial values follow from the final ones of the half step before:
-/// same configuration, velocities after the impact (eq. 16, 18, 19), legs renamed where the gait is
-/// mirrored. Angles in rad, rates in rad/s.
+/// order 6, five for order 8). Initial values follow from the final ones of the phase before:
+/// same configuration, velocities after the impact (eq. 16, 18, 19) or, where a foot takes off, the same
+/// velocities, legs renamed where the gait is mirrored. Angles in rad, rates in rad/s.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct HalfStep<T = f64> {
+pub struct Course<T = f64> {
     /// T, s.
     pub duration: T,
     pub q_initial: Vec<T>,
@@ -39,11 +41,11 @@ pub struct HalfStep<T = f64> {
     pub betad_final: T,
 }
 
-impl HalfStep {
+impl Course {
     /// The same numbers as scalars of another kind.
-    pub fn cast<T: From<f64>>(&self) -> HalfStep<T> {
+    pub fn cast<T: From<f64>>(&self) -> Course<T> {
         let list = |values: &[f64]| values.iter().map(|x| T::from(*x)).collect();
-        HalfStep {
+        Course {
             duration: self.duration.into(),
             q_initial: list(&self.q_initial),
             qd_initial: list(&self.qd_initial),

@@ -40,7 +40,7 @@ impl<'a> Altered<'a> {
 /// What the generated code depends on, as text.
 fn folded(d: &Description) -> String {
     let rotors: Vec<f64> = d.joints.iter().map(|j| j.gear * j.gear * j.rotor_inertia).collect();
-    let frame = (d.gravity, d.lateral, d.rotation, d.then, d.unactuated);
+    let frame = (d.gravity, d.rotation, d.then, d.unactuated);
     let modes: Vec<_> = d.phases.iter().map(|phase| phase.mode).collect();
     format!("{frame:?} {modes:?} {:?} {:?} {:?} {rotors:?}", d.bodies, d.legs, d.corners)
 }

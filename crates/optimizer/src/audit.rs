@@ -6,7 +6,7 @@
 use crate::origin::{gait_of, under_its_limits};
 use crate::result::GaitResult;
 use piaffe_model::motion::Motion;
-use piaffe_model::{Description, Gait};
+use piaffe_model::{Description, Gait, limit};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -181,7 +181,7 @@ pub fn derived(result: &GaitResult, gaits: &[&dyn Gait]) -> Result<GaitResult, R
         return Err(Refusal::NoMotion(Built { robot, polynomial_order }));
     }
     let refuted = |reason: String| Refusal::Because(Verdict::NotConfirmed, reason);
-    let motion = Motion { half_steps: result.variables.clone() };
+    let motion = Motion { phases: result.variables.clone() };
     under_its_limits(result, gait, |gait| GaitResult::of_motion(gait, result.criterion, result.speed, &motion))
         .map_err(refuted)?
         .map_err(|error| refuted(format!("its motion cannot be derived anew: {error}")))
@@ -231,9 +231,11 @@ fn compare(place: &str, stated: &Value, found: &Value, differences: &mut Vec<Dif
     match (stated, found) {
         (Value::Object(a), Value::Object(b)) => {
             // What only one of them has differs from nothing.
-            let keys = a.keys().chain(b.keys().filter(|key| !a.contains_key(*key)));
-            for key in keys {
-                let [a, b] = [a, b].map(|map| map.get(key).unwrap_or(&Value::Null));
+            let stated =
+                a.iter().map(|(key, value)| (current(key), value, b.get(current(key)).unwrap_or(&Value::Null)));
+            let found = b.iter().map(|(key, value)| (key.as_str(), &Value::Null, value));
+            let missing = found.filter(|(key, ..)| a.keys().all(|stated| current(stated) != *key));
+            for (key, a, b) in stated.chain(missing) {
                 compare(&format!("{place}.{key}"), a, b, differences);
             }
         }
@@ -251,6 +253,15 @@ fn compare(place: &str, stated: &Value, found: &Value, differences: &mut Vec<Dif
 fn agree(stated: &Value, found: &Value) -> bool {
     match (stated.as_f64(), found.as_f64()) {
         (Some(a), Some(b)) => (a - b).abs() <= ABSOLUTE + RELATIVE * a.abs().max(b.abs()),
-        _ => stated == found,
+        _ => stated == found || stated.as_str().is_some_and(|words| found == &limit::current(words)),
+    }
+}
+
+/// A key as this build writes it; older ones called phases half steps.
+fn current(key: &str) -> &str {
+    match key {
+        "half_step" => "phase",
+        "half_steps" => "phases",
+        _ => key,
     }
 }

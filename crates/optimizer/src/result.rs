@@ -10,7 +10,7 @@ use crate::search::multi_start::{Found, Settings};
 use crate::sensitivity::Sensitivities;
 use crate::stability::Stability;
 use crate::verdict::{self, Verdict};
-use piaffe_model::motion::{Costs, Criterion, HalfStep, Motion};
+use piaffe_model::motion::{Costs, Course, Criterion, Motion};
 use piaffe_model::{Gait, Specification};
 use piaffe_sqp as sqp;
 use piaffe_verify::certificate::Certificate;
@@ -87,16 +87,16 @@ pub struct GaitResult {
     /// What the optimum without these further constraints costs, where it was looked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub virtual_cost: Option<f64>,
-    /// s, per half step that defines the gait.
+    /// s, per phase that defines the gait.
     #[serde(default)]
     pub durations: Vec<f64>,
-    /// Travel in these half steps, m.
+    /// Travel in these phases, m.
     pub step_length: Option<f64>,
     /// Order of the joint polynomials.
     pub polynomial_order: usize,
-    /// The motion (see `HalfStep`); of a failed search none.
+    /// The motion (see `Course`); of a failed search none.
     #[serde(default)]
-    pub variables: Vec<HalfStep>,
+    pub variables: Vec<Course>,
     pub receipt: Option<Receipt>,
     /// What is proven between the instants of the receipt.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -148,8 +148,9 @@ pub struct Receipt {
     /// Absent where they cannot be looked at.
     pub kkt_residual: Option<f64>,
     /// Names of the active constraints.
+    #[serde(deserialize_with = "piaffe_model::limit::names")]
     pub active: Vec<String>,
-    /// The same with half step, time and margin.
+    /// The same with phase, time and margin.
     pub findings: Vec<Finding>,
     /// The constraint that is violated most, if any is.
     pub worst: Option<Finding>,
@@ -168,9 +169,11 @@ pub struct NotExamined {
 /// A constraint that takes part in a conflict.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ConflictEntry {
+    #[serde(deserialize_with = "piaffe_model::limit::name")]
     pub constraint: String,
     /// 1-based.
-    pub half_step: usize,
+    #[serde(alias = "half_step")]
+    pub phase: usize,
     /// s.
     pub time: f64,
     /// Scaled; 0 for one that holds but is in the way of others.
@@ -333,7 +336,7 @@ impl GaitResult {
 
     /// The motion, if there is one.
     pub fn motion(&self) -> Option<Motion> {
-        self.is_optimal().then(|| Motion { half_steps: self.variables.clone() })
+        self.is_optimal().then(|| Motion { phases: self.variables.clone() })
     }
 
     /// Its variables Θ.
@@ -367,7 +370,7 @@ impl GaitResult {
         self.costs = holds.then_some(receipt.costs);
         self.step_length = Some(receipt.step_length);
         self.durations = motion.durations().collect();
-        self.variables = motion.half_steps.clone();
+        self.variables = motion.phases.clone();
         self.peaks = receipt.peaks;
         self.receipt = Some(Receipt {
             max_violation: receipt.max_violation,
@@ -401,8 +404,8 @@ impl GaitResult {
             .conflicts
             .iter()
             .map(|c| {
-                let Label { half_step, time, .. } = c.label;
-                ConflictEntry { constraint: c.label.name(), half_step, time, violation: c.violation, weight: c.weight }
+                let Label { phase, time, .. } = c.label;
+                ConflictEntry { constraint: c.label.name(), phase, time, violation: c.violation, weight: c.weight }
             })
             .collect();
         (self.status, self.message) = match local.status {

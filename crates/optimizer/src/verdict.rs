@@ -16,7 +16,7 @@ use piaffe_verify::{Receipt, VerifyError, verify};
 /// Largest violation and cycle error with which a motion counts as an optimum; and see [`KKT_RESIDUAL`].
 pub const VIOLATION: f64 = 1e-6;
 pub const CYCLE_ERROR: f64 = 1e-6;
-/// Points per half step on which the constraints are checked.
+/// Points per phase on which the constraints are checked.
 pub const GRID: usize = 2001;
 
 /// What was found of a motion; see the [module](self).
@@ -92,8 +92,8 @@ impl Verdict {
 fn broken(certificate: &Certificate) -> impl Iterator<Item = String> + '_ {
     certificate.gaps.iter().filter(|gap| gap.violated).map(|gap| {
         format!(
-            "{} is certainly broken in half step {} between {:.6} and {:.6} s",
-            gap.constraint, gap.half_step, gap.from, gap.to
+            "{} is certainly broken in phase {} between {:.6} and {:.6} s",
+            gap.constraint, gap.phase, gap.from, gap.to
         )
     })
 }

@@ -9,7 +9,7 @@ use crate::friction::Friction;
 use crate::instant::{Glance, Quantities};
 use crate::swing::swings;
 use piaffe_model::motion::{Criterion, Motion};
-use piaffe_model::{Body, Description, Gait, Mode, Rotation, Then, Transition};
+use piaffe_model::{Body, Description, Gait, Mode, Rotation, Then, Transition, other_leg};
 
 /// A point or vector in world axes: forward, up, to the right.
 pub type Point = [f64; 3];
@@ -100,11 +100,11 @@ impl<'a> Walk<'a> {
         for phase in 0..rounds * count {
             let (k, role) = (phase % count, Role { gait, mirrored: phase >= count });
             let mode = role.mode(d.phases[k].mode);
-            let span = Span { start, duration: motion.half_steps[k].duration, mode };
+            let span = Span { start, duration: motion.phases[k].duration, mode };
             let ends = [0, cycle.last_node(k)].map(|node| cycle.sample(k, node));
             if phase == 0 {
                 // The line of travel is midway between the footprints.
-                origin[2] = -0.5 * role.feet(&ends[1], mode, [0.0; 3])[1 - mode.stance().unwrap_or_default()][2];
+                origin[2] = -0.5 * role.feet(&ends[1], mode, [0.0; 3])[other_leg(mode.stance().unwrap_or_default())][2];
             }
             let mut glance = Glance::new(d, k);
             for share in shares(&span) {
@@ -155,12 +155,15 @@ impl Role<'_> {
         if self.mirrored { mode.exchanged() } else { mode }
     }
 
+    fn leg(&self, leg: usize) -> usize {
+        if self.mirrored { other_leg(leg) } else { leg }
+    }
+
     fn transition(&self, transition: Transition) -> Transition {
-        let leg = |leg: usize| if self.mirrored { 1 - leg } else { leg };
         match transition {
-            Transition::Touchdown(lands) => Transition::Touchdown(leg(lands)),
-            Transition::Landing(lands) => Transition::Landing(leg(lands)),
-            Transition::TakeOff(leaves) => Transition::TakeOff(leg(leaves)),
+            Transition::Touchdown(lands) => Transition::Touchdown(self.leg(lands)),
+            Transition::Landing(lands) => Transition::Landing(self.leg(lands)),
+            Transition::TakeOff(leaves) => Transition::TakeOff(self.leg(leaves)),
         }
     }
 
@@ -175,8 +178,7 @@ impl Role<'_> {
         let mut feet = [origin; 2];
         let components = self.gait.description().positions();
         // In the order of the legs as the phase calls them.
-        let swinging: Vec<usize> =
-            self.mode(mode).swinging().map(|leg| if self.mirrored { 1 - leg } else { leg }).collect();
+        let swinging: Vec<usize> = self.mode(mode).swinging().map(|leg| self.leg(leg)).collect();
         for (leg, foot) in swinging.into_iter().zip(sample.feet.chunks(components)) {
             feet[leg] = add(origin, self.point(foot));
         }
@@ -241,7 +243,7 @@ impl Walk<'_> {
     pub fn clearance_curve(&self, leg: usize, m: &Moment) -> f64 {
         let (d, count) = (self.description, self.description.phases.len());
         let durations: Vec<f64> = self.phases[..count].iter().map(|phase| phase.duration).collect();
-        let leg = if m.phase >= count { 1 - leg } else { leg };
+        let leg = if m.phase >= count { other_leg(leg) } else { leg };
         let swings = swings(d, m.phase % count);
         swings.iter().find(|swing| swing.leg == leg).map_or(0.0, |swing| swing.height(&durations, m.share))
     }

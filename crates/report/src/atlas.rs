@@ -129,7 +129,7 @@ impl Atlas {
             Criterion::ALL.into_iter().filter(|c| self.of(*c).next().is_some()).map(|c| self.cost(c)).collect();
         figures.push(self.shape("transport", "Cost of transport over speed", ["E/(m g d)", ""], |o| vec![o.transport]));
         figures
-            .push(self.shape("durations", "Half steps over speed", ["duration", "s"], |o| o.result.durations.clone()));
+            .push(self.shape("durations", "Durations over speed", ["duration", "s"], |o| o.result.durations.clone()));
         figures.push(self.shape("step-lengths", "Travel over speed", ["length", "m"], |o| {
             o.result.step_length.into_iter().collect()
         }));
@@ -244,7 +244,7 @@ impl Atlas {
                 plot.curves.push(curve);
             }
         }
-        let thin = if thin { " Thin: the second half step." } else { "" };
+        let thin = if thin { " Thin: the phases after the first." } else { "" };
         let caption = format!("Solid: least energy; dashed: least torque.{thin}{}", self.of_jumps());
         Figure::plot(name, &plot, caption)
     }

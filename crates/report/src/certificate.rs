@@ -5,8 +5,8 @@ use maud::{Markup, html};
 use piaffe_verify::certificate::{Certificate, Gap};
 
 pub fn section(c: &Certificate) -> Markup {
-    let pieces: usize = c.half_steps.iter().map(|h| h.evaluations).sum();
-    let width = c.half_steps.iter().map(|h| h.width[0]).fold(0.0, f64::max);
+    let pieces: usize = c.phases.iter().map(|h| h.evaluations).sum();
+    let width = c.phases.iter().map(|h| h.width[0]).fold(0.0, f64::max);
     html! {
         h3 { "Between the instants" }
         @if c.is_certified() {
@@ -23,9 +23,9 @@ pub fn section(c: &Certificate) -> Markup {
                 } }
         }
         details { summary { "Proven bounds" } div.scroll { table {
-            thead { tr { th { "limit" } th.n { "half step" } th.n { "the margin is never below" } } }
+            thead { tr { th { "limit" } th.n { "phase" } th.n { "the margin is never below" } } }
             tbody { @for bound in &c.bounds { tr {
-                td { (bound.constraint) } td.n { (bound.half_step) }
+                td { (bound.constraint) } td.n { (bound.phase) }
                 td.n { @if let Some(margin) = bound.margin { (scientific(margin)) } @else { "–" } }
             } } }
         } } }
@@ -39,7 +39,7 @@ fn unproven(gap: &Gap) -> Markup {
         (false, None) => "nothing could be proven".to_string(),
     };
     html! {
-        li { b { (gap.constraint) } ", half step " (gap.half_step) ", from " (digits(gap.from, 6)) " to " (digits(gap.to, 6))
+        li { b { (gap.constraint) } ", phase " (gap.phase) ", from " (digits(gap.from, 6)) " to " (digits(gap.to, 6))
             " s: " (verdict) "." }
     }
 }

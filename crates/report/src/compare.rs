@@ -36,7 +36,7 @@ fn question(criterion: Criterion, speed: f64, list: &[&Subject]) -> Markup {
         div.scroll { table.compare {
             thead { tr {
                 th { "gait" } th.n { "cost, " (criterion.unit()) } th { "against the best" } th.n { "cost of transport" }
-                th { "half steps, s" } th.n { "travel, m" } th { "spent by" } th { "held by" } th { "between the instants" } th { "real legs" }
+                th { "phases, s" } th.n { "travel, m" } th { "spent by" } th { "held by" } th { "between the instants" } th { "real legs" }
             } }
             tbody { @for s in list { (row(s, list[0].cost, most)) } }
         } }

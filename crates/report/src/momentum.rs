@@ -1,4 +1,4 @@
-//! Momentum about the stance foot (eq. 8): what gravity gives along a half step and the impact takes.
+//! Momentum about the stance foot (eq. 8): what gravity gives along a support and the impact takes.
 
 use super::figure::Figure;
 use super::plot::Curve;
@@ -19,7 +19,7 @@ pub fn momentum(s: &Subject) -> Figure {
     Figure::plot(
         "momentum",
         &plot,
-        "The free motion: joints that follow a phase recover from a push where it is farther from zero at the end of a half step \
+        "The free motion: joints that follow a phase recover from a push where it is farther from zero at the end of a support \
          than at its beginning, and cannot where it crosses zero (eq. 8).",
     )
 }

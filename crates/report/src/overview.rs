@@ -40,6 +40,7 @@ pub struct Greatest {
     /// m/s.
     pub speed: f64,
     /// What conflicts just above it, weightiest first. That was seen by the search and cannot be seen from results.
+    #[serde(deserialize_with = "piaffe_model::limit::names")]
     pub ended_by: Vec<String>,
 }
 

@@ -102,7 +102,7 @@ fn task(r: &GaitResult) -> String {
     format!("least {} at {} m/s", r.criterion.name(), given(r.speed))
 }
 
-/// Half steps, s.
+/// Phases, s.
 pub fn durations(r: &GaitResult) -> String {
     r.durations.iter().map(|t| significant(*t, 3)).collect::<Vec<_>>().join(" / ")
 }
@@ -231,7 +231,7 @@ fn table(report: &Report) -> Markup {
         details open[report.atlas.is_none()] { summary { "All results" } div.scroll { table {
             thead { tr {
                 th { "gait" } th { "least" } th.n { "speed, m/s" } th.n { "cost" } th.n { "cost of transport" } th { "receipt" } th { "between the instants" }
-                th { "real legs" } th.n { "half steps, s" } th.n { "travel, m" } th.n { "violation" } th.n { "cycle error" } th.n { "KKT residual" }
+                th { "real legs" } th.n { "phases, s" } th.n { "travel, m" } th.n { "violation" } th.n { "cycle error" } th.n { "KKT residual" }
             } }
             tbody { @for r in &report.records { (row(report, r)) } }
         } } }
@@ -315,7 +315,7 @@ fn facts(s: &Subject) -> Markup {
             dl {
                 dt { "cost of transport" } dd { (digits(s.transport, 4)) span.note { " E/(m g d)" @if r.criterion != Criterion::Energy { ", of this motion’s energy" } } }
                 @if let Some(costs) = costs { dt { (other.name()) } dd { (digits(costs.of(other), 6)) " " (other.unit()) } }
-                dt { "half steps" } dd { (durations.join(" + ")) " s" }
+                dt { "phases" } dd { (durations.join(" + ")) " s" }
                 dt { "travel in them" } dd { (digits(r.step_length.unwrap_or(0.0), 4)) " m" }
                 @for leg in 0..2 { dt { "virtual leg " (leg + 1) } dd { (s.leg_name(leg)) } }
                 dt { "local optima" } dd { (r.local_optima.len()) " from " (r.search.effort.starts) " starts" span.note { ", as the search says" } }
@@ -354,7 +354,7 @@ fn receipt(r: &GaitResult) -> Markup {
     html! {
         div.receipt {
             h3 { "Receipt" }
-            p { "Derived anew from the motion's numbers by an integration that shares nothing with the optimizer, at " (receipt.grid) " instants of each half step." }
+            p { "Derived anew from the motion's numbers by an integration that shares nothing with the optimizer, at " (receipt.grid) " instants of each phase." }
             dl {
                 dt { "largest violation of any limit" } dd { (scientific(receipt.max_violation)) " in natural units" }
                 dt { "distance from a closed cycle" } dd { (scientific(receipt.cycle_error)) " rad, rad/s" }
@@ -366,7 +366,7 @@ fn receipt(r: &GaitResult) -> Markup {
             h3 { "Limits without room to spare" }
             @if receipt.findings.is_empty() { p { "None: all limits have room." } }
             ul { @for f in &receipt.findings {
-                li { b { (f.constraint) } ", half step " (f.half_step) " at " (digits(f.time, 3)) " s. " (meaning(&f.constraint)) }
+                li { b { (f.constraint) } ", phase " (f.phase) " at " (digits(f.time, 3)) " s. " (meaning(&f.constraint)) }
             } }
         }
     }

@@ -12,7 +12,7 @@ use piaffe_model::Mode;
 use piaffe_model::motion::Criterion;
 use piaffe_optimizer::four_legs::{Instant, Lift, RealLegs, Verdict, Worst};
 
-/// Intervals per half step with which curves are drawn.
+/// Intervals per phase with which curves are drawn.
 const INTERVALS: usize = 120;
 
 /// Vertical load and use of friction of every real foot, and the least margin over time; none where nothing is known.
@@ -103,7 +103,7 @@ fn verdict(legs: &RealLegs) -> String {
 
 fn worst(what: &str, w: &Worst) -> Markup {
     html! {
-        li { (what) ": a margin of " (digits(w.margin, 4)) ", half step " (w.half_step) " at " (digits(w.time, 3))
+        li { (what) ": a margin of " (digits(w.margin, 4)) ", phase " (w.phase) " at " (digits(w.time, 3))
             " s. In the way of more: " (w.binding.iter().map(|b| spaced(&b.limit)).collect::<Vec<_>>().join(", ")) "." }
     }
 }

@@ -8,7 +8,7 @@ use super::scene::{Anchor, Dash, Pen, Scene, Xy};
 use super::subject::Subject;
 use piaffe_optimizer::walk::{Moment, Point};
 
-/// Poses per half step.
+/// Poses per phase.
 const POSES: usize = 7;
 const SMALL: f64 = 11.0;
 
@@ -23,7 +23,7 @@ pub fn figures(s: &Subject) -> Vec<Figure> {
         if s.description().flies() { ", in flight on a parabola" } else { "" }
     );
     let mut figures = vec![Figure::drawing("sticks", "Stick diagram", side.draw(s, 640.0), caption)];
-    if s.description().lateral {
+    if s.description().is_spatial() {
         let front = View { horizontal: [0.0, 0.0, 1.0], vertical: [0.0, 1.0, 0.0], axis: "Zf" };
         let mut figure = Figure::drawing(
             "sticks-behind",

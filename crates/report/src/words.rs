@@ -23,8 +23,8 @@ fn sentence(limit: Limit, of: &str) -> String {
         Limit::ClearanceOfFoot => format!("The foot of {of} touches the curve that it must stay above."),
         Limit::PlatformHeight => "The mass centre of the platform is as low as is allowed.".into(),
         Limit::Height => format!("{of} is as near to the ground as is allowed."),
-        Limit::ShortestHalfStep => "The half step is as short as is allowed.".into(),
-        Limit::LongestHalfStep => "The half step is as long as is allowed.".into(),
+        Limit::ShortestPhase => "The phase is as short as is allowed.".into(),
+        Limit::LongestPhase => "The phase is as long as is allowed.".into(),
         Limit::VerticalImpulse => {
             "The landing foot is hardly pressed to the ground: one step further it would pull.".into()
         }
@@ -33,13 +33,13 @@ fn sentence(limit: Limit, of: &str) -> String {
             "The impulse of the landing on one of the real feet is on the edge of the friction cone.".into()
         }
         Limit::Leaving => "The foot that leaves the ground leaves it without speed.".into(),
-        Limit::Touchdown => "The half step ends where the swing foot meets the ground.".into(),
+        Limit::Touchdown => "The phase ends where the swing foot meets the ground.".into(),
         Limit::MeanSpeed => "The mean speed is the one that was asked for.".into(),
-        Limit::ClosureOfBeta => "The unactuated coordinate must end where the next half step begins.".into(),
-        Limit::ClosureOfSigma => "The angular momentum must end where the next half step begins.".into(),
+        Limit::ClosureOfBeta => "The unactuated coordinate must end where the next phase begins.".into(),
+        Limit::ClosureOfSigma => "The angular momentum must end where the next phase begins.".into(),
         Limit::Pitching => "The real feet have nothing that would keep the landing from pitching the robot.".into(),
         Limit::Still => format!("{of} is held still, where every motion of it would cost more."),
-        Limit::Duration => "The half step is as short or as long as is allowed.".into(),
+        Limit::Duration => "The phase is as short or as long as is allowed.".into(),
     }
 }
 

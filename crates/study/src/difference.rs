@@ -52,7 +52,7 @@ pub struct Changed {
 pub struct Room {
     pub constraint: String,
     /// 1-based.
-    pub half_step: usize,
+    pub phase: usize,
     pub margins: Pair<Option<f64>>,
 }
 
@@ -153,16 +153,16 @@ pub fn changed(a: &Specification, b: &Specification) -> Vec<Changed> {
     changed
 }
 
-/// Limits that are active in one of both, with the half step.
+/// Limits that are active in one of both, with the phase.
 fn limits(a: &GaitResult, b: &GaitResult) -> Vec<Room> {
     let findings = |r: &GaitResult| r.receipt.as_ref().map_or(Vec::new(), |receipt| receipt.findings.clone());
     let mut limits: Vec<Room> = Vec::new();
     for (own, in_b) in [(findings(a), false), (findings(b), true)] {
         for finding in own {
-            let known = |room: &Room| (&room.constraint, room.half_step) == (&finding.constraint, finding.half_step);
+            let known = |room: &Room| (&room.constraint, room.phase) == (&finding.constraint, finding.phase);
             let place = limits.iter().position(known).unwrap_or_else(|| {
-                let (constraint, half_step) = (finding.constraint.clone(), finding.half_step);
-                limits.push(Room { constraint, half_step, margins: Pair { a: None, b: None } });
+                let (constraint, phase) = (finding.constraint.clone(), finding.phase);
+                limits.push(Room { constraint, phase, margins: Pair { a: None, b: None } });
                 limits.len() - 1
             });
             let margins = &mut limits[place].margins;

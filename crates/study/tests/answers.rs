@@ -137,5 +137,5 @@ fn limits_at_each_real_leg_are_those_of_a_robot_that_is_asked_for_alone() {
     }
     let uneven = Study { robot: Robot::new(files).unwrap(), gaits: vec!["amble".into()], ..base };
     let faults = uneven.faults();
-    assert!(faults.len() == 1 && faults[0].contains("half steps that mirror each other"), "{faults:?}");
+    assert!(faults.len() == 1 && faults[0].contains("halves mirror each other"), "{faults:?}");
 }

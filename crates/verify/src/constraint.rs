@@ -11,7 +11,7 @@ use piaffe_model::{Description, Limit};
 /// A margin below this makes a constraint active.
 pub const ACTIVE: f64 = 1e-4;
 
-/// One inequality or equality, to hold at all times of a half step or at its end.
+/// One inequality or equality, to hold at all times of a phase or at its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Constraint {
     /// |Γ| ≤ greatest torque.
@@ -90,8 +90,8 @@ impl Constraint {
             Constraint::Clearance => Limit::Clearance,
             Constraint::FootClearance(_) => Limit::ClearanceOfFoot,
             Constraint::Touchdown => Limit::Touchdown,
-            Constraint::Shortest => Limit::ShortestHalfStep,
-            Constraint::Longest => Limit::LongestHalfStep,
+            Constraint::Shortest => Limit::ShortestPhase,
+            Constraint::Longest => Limit::LongestPhase,
             Constraint::VerticalImpulse => Limit::VerticalImpulse,
             Constraint::ImpulseFriction => Limit::ImpulseFriction,
             Constraint::Leaving => Limit::Leaving,
@@ -116,20 +116,20 @@ impl Constraint {
     }
 }
 
-/// The least margin of every constraint over one half step.
+/// The least margin of every constraint over one phase.
 #[derive(Clone, Debug)]
 pub struct Tally {
-    half_step: usize,
+    phase: usize,
     joints: usize,
     /// Constraint, least margin, its time.
     entries: Vec<(Constraint, f64, f64)>,
 }
 
 impl Tally {
-    /// For half step `half_step`, 1-based.
-    pub fn new(description: &Description, half_step: usize) -> Tally {
+    /// For phase `phase`, 1-based.
+    pub fn new(description: &Description, phase: usize) -> Tally {
         let entries = Constraint::all(description).map(|c| (c, f64::INFINITY, 0.0)).collect();
-        Tally { half_step, joints: description.joints(), entries }
+        Tally { phase, joints: description.joints(), entries }
     }
 
     /// Notes the margin of a constraint at a time; a margin that is not a number counts as violated.
@@ -193,6 +193,6 @@ impl Tally {
     }
 
     fn finding(&self, description: &Description, &(constraint, margin, time): &(Constraint, f64, f64)) -> Finding {
-        Finding { constraint: constraint.name(description), half_step: self.half_step, time, margin }
+        Finding { constraint: constraint.name(description), phase: self.phase, time, margin }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::multibody::Multibody;
 use super::numbers::Numbers;
-use piaffe_model::motion::HalfStep;
+use piaffe_model::motion::Course;
 use piaffe_model::{Description, Mode};
 use piaffe_number::Scalar;
 
@@ -26,7 +26,7 @@ pub struct Fall<T = f64> {
 
 impl<T: Scalar> Contact<T> {
     /// Of phase `index` of a motion. A flight begins as the phase before it ends, which stands.
-    pub fn of(description: &Description, numbers: &Numbers<T>, phases: &[HalfStep<T>], index: usize) -> Contact<T> {
+    pub fn of(description: &Description, numbers: &Numbers<T>, phases: &[Course<T>], index: usize) -> Contact<T> {
         if let Mode::Stance(leg) = description.phases[index].mode {
             return Contact::Foot(leg);
         }
@@ -58,8 +58,8 @@ impl<T> From<usize> for Contact<T> {
 }
 
 /// Of phase `index` of a motion, in numbers of any kind.
-pub fn contact<T: Scalar>(description: &Description, phases: &[HalfStep], index: usize) -> Contact<T> {
-    let phases: Vec<HalfStep<T>> = phases.iter().map(HalfStep::cast).collect();
+pub fn contact<T: Scalar>(description: &Description, phases: &[Course], index: usize) -> Contact<T> {
+    let phases: Vec<Course<T>> = phases.iter().map(Course::cast).collect();
     Contact::of(description, &Numbers::new(description), &phases, index)
 }
 

@@ -8,7 +8,7 @@ use super::impact::{Before, impact_of};
 use super::margins::Units;
 use super::multibody::Multibody;
 use super::numbers::Numbers;
-use piaffe_model::motion::HalfStep;
+use piaffe_model::motion::Course;
 use piaffe_model::{Description, Transition};
 use piaffe_number::Scalar;
 
@@ -17,7 +17,7 @@ use piaffe_number::Scalar;
 pub fn transition<T: Scalar>(
     description: &Description,
     numbers: Numbers<T>,
-    phases: &[HalfStep<T>],
+    phases: &[Course<T>],
     index: usize,
     note: impl FnMut(Constraint, T),
 ) -> Result<Vec<T>, VerifyError> {
@@ -34,8 +34,8 @@ pub fn transition<T: Scalar>(
                 Contact::Flight(fall) => Before::Flight(fall.velocity(before.duration)),
             };
             let mut multibody = Multibody::with(description, numbers);
-            let impact = impact_of(&mut multibody, landing, &q, &qd, moves)
-                .ok_or(VerifyError::Impact { half_step: index + 1 })?;
+            let impact =
+                impact_of(&mut multibody, landing, &q, &qd, moves).ok_or(VerifyError::Impact { phase: index + 1 })?;
             let leaving = matches!(moves, Before::Stance).then_some(&impact.leaving);
             units.impact(multibody.numbers(), &impact.impulse, leaving, note);
             impact.after[description.positions()..].to_vec()
@@ -51,8 +51,8 @@ pub fn transition<T: Scalar>(
 }
 
 /// How far the integrated β and β̇ end from what the motion says (eq. 23, 24).
-pub fn closure<T: Scalar>(units: &Units, half_step: &HalfStep<T>, end: [T; 2]) -> [T; 2] {
-    [end[0] - half_step.beta_final, relative(units, end[1], half_step.betad_final)]
+pub fn closure<T: Scalar>(units: &Units, course: &Course<T>, end: [T; 2]) -> [T; 2] {
+    [end[0] - course.beta_final, relative(units, end[1], course.betad_final)]
 }
 
 /// Difference of two rates, relative where they are not slow, else to a slow one.

@@ -6,7 +6,7 @@
 use super::numbers::Rigid;
 use nalgebra::{Vector2, Vector3};
 use num_traits::Zero;
-use piaffe_model::{Description, Rotation};
+use piaffe_model::Description;
 use piaffe_number::Scalar;
 use std::fmt::Debug;
 use std::ops::{AddAssign, Mul, Neg, Sub, SubAssign};
@@ -82,7 +82,7 @@ impl Plane {
     /// Whether all motion of a robot is in it.
     pub fn holds(d: &Description) -> bool {
         let turns_about_z = d.bodies.iter().all(|body| body.coordinate.is_none() || body.axis == 2);
-        !d.lateral && d.rotation != Rotation::Roll && turns_about_z
+        !d.is_spatial() && turns_about_z
     }
 }
 

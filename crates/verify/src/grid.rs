@@ -12,11 +12,11 @@ use super::numbers::Numbers;
 use super::phase::Phase;
 use super::quadrature::{Dry, integral, integral_of_magnitude};
 use super::swing::swings;
-use piaffe_model::motion::HalfStep;
+use piaffe_model::motion::Course;
 use piaffe_number::{Lanes, Scalar};
 use std::array::from_fn;
 
-/// What a half step adds up to.
+/// What a phase adds up to.
 #[derive(Clone, Debug)]
 pub struct Totals {
     /// ∫ Σ Γ² dt, N²·m²·s.
@@ -32,10 +32,10 @@ pub struct Totals {
 /// Instants that are evaluated side by side.
 const LANES: usize = 4;
 
-/// Evaluates `points` instants of a half step and notes the margins.
+/// Evaluates `points` instants of a phase and notes the margins.
 pub fn evaluate(
     phase: &mut Phase,
-    motion: &[HalfStep],
+    motion: &[Course],
     index: usize,
     points: usize,
     tally: &mut Tally,
@@ -50,7 +50,7 @@ pub fn evaluate(
         contact(description, motion, index),
     );
     let own = swings(description, motion, index);
-    let lanes: Vec<HalfStep<Lanes<LANES>>> = motion.iter().map(HalfStep::cast).collect();
+    let lanes: Vec<Course<Lanes<LANES>>> = motion.iter().map(Course::cast).collect();
     let side_by_side = swings(description, &lanes, index);
     let mut state = State::new(description);
     // Lists of a joint at a time, as if there were no dry friction.

@@ -10,7 +10,7 @@
 use super::geometry::Vec3;
 use super::margins::Units;
 use super::multibody::Multibody;
-use piaffe_model::Description;
+use piaffe_model::{Description, other_leg};
 use piaffe_number::Scalar;
 
 /// Pivots below this share of the largest entry make a system singular, in the robot's units.
@@ -63,7 +63,7 @@ pub fn impact_of<T: Scalar>(
         d
     });
     let relative = match before {
-        Before::Stance => multibody.foot(1 - landing).velocity,
+        Before::Stance => multibody.foot(other_leg(landing)).velocity,
         Before::Flight([forward, up]) => multibody.centre().velocity - Vec3::new(forward, up, zero),
     };
     let mut before: Vec<T> = (0..nc).map(|c| -relative[c]).collect();
@@ -100,7 +100,7 @@ pub fn impact_of<T: Scalar>(
     let mut impulse = Vec3::zeros();
     impulse.as_mut_slice()[..nc].copy_from_slice(&right[n..]);
     right.truncate(n);
-    let leaving = velocity(&feet[1 - landing], &right);
+    let leaving = velocity(&feet[other_leg(landing)], &right);
     Some(Impact { before, after: right, impulse, leaving })
 }
 

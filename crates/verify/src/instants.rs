@@ -6,7 +6,7 @@ use super::numbers::Numbers;
 use super::polynomial::Polynomials;
 use super::support::Support;
 use piaffe_model::Description;
-use piaffe_model::motion::HalfStep;
+use piaffe_model::motion::Course;
 use piaffe_number::Scalar;
 
 /// The instants of a phase: Q(t) is prescribed, β and β̇ come from outside.
@@ -83,7 +83,7 @@ impl<'a, T: Scalar> Instants<'a, T> {
     pub fn new(
         description: &'a Description,
         numbers: Numbers<T>,
-        half_step: &HalfStep<T>,
+        course: &Course<T>,
         contact: impl Into<Contact<T>>,
     ) -> Self {
         let contact = contact.into();
@@ -93,7 +93,7 @@ impl<'a, T: Scalar> Instants<'a, T> {
         } else {
             Either::Space(Support::with(description, numbers, leg))
         };
-        Instants { support, polynomials: Polynomials::new(half_step), contact }
+        Instants { support, polynomials: Polynomials::new(course), contact }
     }
 
     pub fn description(&self) -> &'a Description {

@@ -127,7 +127,7 @@ impl<'a, T: Scalar, G: Geometry<T>> Multibody<'a, T, G> {
         for ((foot, leg), arm) in self.feet.iter_mut().zip(&self.description.legs).zip(&self.numbers.feet) {
             self.frames[leg.foot_body].locate(arm, foot);
         }
-        if !self.description.lateral {
+        if !self.description.is_spatial() {
             self.coms.iter_mut().chain(&mut self.feet).for_each(Point::flatten::<T, G>);
         }
     }
@@ -195,7 +195,7 @@ impl<'a, T: Scalar, G: Geometry<T>> Multibody<'a, T, G> {
         }
         let (axis, joint) = self.axis(k);
         let velocity = G::swirl(axis, position - joint);
-        if self.description.lateral { velocity } else { G::flattened(velocity) }
+        if self.description.is_spatial() { velocity } else { G::flattened(velocity) }
     }
 
     /// Partial angular velocity of a body in q̇ₖ.

@@ -1,13 +1,13 @@
 //! One phase as a function of time: Q by eq. 15, β by integration, everything else from them.
 
 use super::contact::Contact;
-use super::error::{VerifyError, check_half_step};
+use super::error::{VerifyError, check_course};
 use super::instants::{Instants, State};
 use super::integrate::{Solution, integrate};
 use super::margins::Units;
 use super::numbers::Numbers;
 use piaffe_model::Description;
-use piaffe_model::motion::HalfStep;
+use piaffe_model::motion::Course;
 use piaffe_number::Scalar;
 
 /// Error allowed in a step of the integration of β, rad, and of β̇ in the unit of slow rates; relative where they are greater than 1.
@@ -30,11 +30,11 @@ impl<'a> Phase<'a> {
     /// Integrates β over phase `number`, 1-based, on such a contact.
     pub fn new(
         description: &'a Description,
-        half_step: &HalfStep,
+        course: &Course,
         contact: impl Into<Contact>,
         number: usize,
     ) -> Result<Self, VerifyError> {
-        Phase::with(description, Numbers::new(description), half_step, contact, number)
+        Phase::with(description, Numbers::new(description), course, contact, number)
     }
 }
 
@@ -43,20 +43,20 @@ impl<'a, T: Scalar> Phase<'a, T> {
     pub fn with(
         description: &'a Description,
         numbers: Numbers<T>,
-        half_step: &HalfStep<T>,
+        course: &Course<T>,
         contact: impl Into<Contact<T>>,
         number: usize,
     ) -> Result<Self, VerifyError> {
-        check_half_step(half_step, description.prescribed(), number)?;
-        let mut instants = Instants::new(description, numbers, half_step, contact);
+        check_course(course, description.prescribed(), number)?;
+        let mut instants = Instants::new(description, numbers, course, contact);
         let mut state = State::new(description);
         let units = Units::new(description);
         let rate = |t: f64, y: &[T; 2]| {
             let betad = y[1].scale(units.rate());
             Some([betad, instants.accelerate(t.into(), [y[0], betad], &mut state)?.scale(1.0 / units.rate())])
         };
-        let initial = [half_step.beta_initial, half_step.betad_initial.scale(1.0 / units.rate())];
-        let duration = half_step.duration.value();
+        let initial = [course.beta_initial, course.betad_initial.scale(1.0 / units.rate())];
+        let duration = course.duration.value();
         let beta =
             integrate(rate, 0.0, duration, initial, TOLERANCE).map_err(|stop| VerifyError::stopped(stop, number))?;
         Ok(Phase { duration, number, instants, beta, units, cursor: 0 })
@@ -95,6 +95,6 @@ impl<'a, T: Scalar> Phase<'a, T> {
 
     /// The error of a state that does not exist at time `t`.
     pub fn singular(&self, t: f64) -> VerifyError {
-        VerifyError::Singular { half_step: self.number, time: t }
+        VerifyError::Singular { phase: self.number, time: t }
     }
 }

@@ -5,10 +5,10 @@
 //! for a value and a rate), p(s) = c₀ + c₁(s − s₀) + c₂(s − s₀)(s − s₁) + …, where the cₖ are divided
 //! differences. One interior value makes the paper's fourth order; any number is allowed.
 
-use piaffe_model::motion::HalfStep;
+use piaffe_model::motion::Course;
 use piaffe_number::Scalar;
 
-/// The prescribed coordinates of one half step as functions of time.
+/// The prescribed coordinates of one phase as functions of time.
 #[derive(Clone, Debug)]
 pub struct Polynomials<T = f64> {
     duration: T,
@@ -19,23 +19,23 @@ pub struct Polynomials<T = f64> {
 
 impl<T: Scalar> Polynomials<T> {
     /// From values and rates; a number that is missing in a list makes its coordinate undefined.
-    pub fn new(half_step: &HalfStep<T>) -> Self {
-        let interior = half_step.q_interior.len();
+    pub fn new(course: &Course<T>) -> Self {
+        let interior = course.q_interior.len();
         let (zero, one) = (T::zero(), T::from(1.0));
         let mut nodes = vec![zero, zero];
         nodes.extend((1..=interior).map(|k| T::from(k as f64) / T::from((interior + 1) as f64)));
         nodes.extend([one, one]);
         let mut differences = Vec::new();
-        for k in 0..half_step.q_initial.len() {
+        for k in 0..course.q_initial.len() {
             let of = |list: &[T]| list.get(k).copied().unwrap_or(T::from(f64::NAN));
-            let (first, last) = (of(&half_step.q_initial), of(&half_step.q_final));
+            let (first, last) = (of(&course.q_initial), of(&course.q_final));
             let mut values = vec![first, first];
-            values.extend(half_step.q_interior.iter().map(|q| of(q)));
+            values.extend(course.q_interior.iter().map(|q| of(q)));
             values.extend([last, last]);
-            let rates = [of(&half_step.qd_initial), of(&half_step.qd_final)].map(|rate| rate * half_step.duration);
+            let rates = [of(&course.qd_initial), of(&course.qd_final)].map(|rate| rate * course.duration);
             differences.extend(divided_differences(&nodes, values, rates));
         }
-        Polynomials { duration: half_step.duration, nodes, differences }
+        Polynomials { duration: course.duration, nodes, differences }
     }
 
     /// Q, Q̇ and Q̈ of coordinate `k` at time `t`; s, rad, rad/s, rad/s².

@@ -24,16 +24,16 @@ pub struct Receipt {
     /// that is greater, to a fifth of √(gravity/leg).
     pub cycle_error: f64,
     pub costs: Costs,
-    /// Travel of the platform's mass centre over the half steps of the motion, m.
+    /// Travel of the platform's mass centre over the phases of the motion, m.
     pub step_length: f64,
     /// Mean forward speed, m/s.
     pub speed: f64,
-    /// Inequalities without room to spare: one entry per constraint and half step, at its worst time.
+    /// Inequalities without room to spare: one entry per constraint and phase, at its worst time.
     pub active: Vec<Finding>,
     /// The inequality with the least room, active or not.
     pub least: Option<Finding>,
     pub peaks: Vec<JointPeak>,
-    /// Points per half step.
+    /// Points per phase.
     pub grid: usize,
 }
 
@@ -41,16 +41,18 @@ pub struct Receipt {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Finding {
     /// Its name, as in "torque of haunch1".
+    #[serde(deserialize_with = "piaffe_model::limit::name")]
     pub constraint: String,
     /// 1-based.
-    pub half_step: usize,
-    /// From the beginning of the half step, s.
+    #[serde(alias = "half_step")]
+    pub phase: usize,
+    /// From the beginning of the phase, s.
     pub time: f64,
     /// Room that is left, scaled; negative = violated.
     pub margin: f64,
 }
 
-/// How much of its actuator a joint uses, over all half steps of the motion.
+/// How much of its actuator a joint uses, over all phases of the motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JointPeak {
     pub name: String,
@@ -66,7 +68,7 @@ pub struct JointPeak {
     pub envelope_margin: f64,
 }
 
-/// Evaluates a motion at `grid` points per half step, to be performed at the mean `speed` (m/s).
+/// Evaluates a motion at `grid` points per phase, to be performed at the mean `speed` (m/s).
 ///
 /// Nothing is taken from whoever made the motion but its variables: β is integrated anew, and the
 /// dynamics come from the numbers of the description alone.
@@ -82,17 +84,17 @@ pub fn verify(description: &Description, motion: &Motion, speed: f64, grid: usiz
     let mut cycle_error = 0.0_f64;
     let mut tallies = Vec::new();
     let mut totals: Vec<Totals> = Vec::new();
-    for (i, half_step) in motion.half_steps.iter().enumerate() {
+    for (i, course) in motion.phases.iter().enumerate() {
         let mut tally = Tally::new(description, i + 1);
-        let mut phase = Phase::new(description, half_step, contact(description, &motion.half_steps, i), i + 1)?;
-        totals.push(evaluate(&mut phase, &motion.half_steps, i, grid, &mut tally)?);
-        let at_impact = |constraint, margin| tally.note(constraint, margin, half_step.duration);
-        let gaps = transition(description, Numbers::new(description), &motion.half_steps, i, at_impact)?;
-        let all = gaps.into_iter().chain(closure(&units, half_step, phase.beta_end()));
+        let mut phase = Phase::new(description, course, contact(description, &motion.phases, i), i + 1)?;
+        totals.push(evaluate(&mut phase, &motion.phases, i, grid, &mut tally)?);
+        let at_impact = |constraint, margin| tally.note(constraint, margin, course.duration);
+        let gaps = transition(description, Numbers::new(description), &motion.phases, i, at_impact)?;
+        let all = gaps.into_iter().chain(closure(&units, course, phase.beta_end()));
         cycle_error = all.fold(cycle_error, |worst, gap| worst.max(gap.abs()));
         let numbers = phase.numbers();
-        units.duration(numbers, i, half_step.duration, |constraint, margin| {
-            tally.note(constraint, margin, half_step.duration)
+        units.duration(numbers, i, course.duration, |constraint, margin| {
+            tally.note(constraint, margin, course.duration)
         });
         tallies.push(tally);
     }
@@ -106,8 +108,8 @@ pub fn verify(description: &Description, motion: &Motion, speed: f64, grid: usiz
     }
     let costs = Costs { energy: sum(|t| t.energy) / distance, torque: sum(|t| t.torque) / distance };
     let mean_speed = step_length / motion.durations().sum::<f64>();
-    if let (Some(tally), Some(half_step)) = (tallies.last_mut(), motion.half_steps.last()) {
-        tally.note(Constraint::MeanSpeed, Units::mean_speed(mean_speed, speed), half_step.duration);
+    if let (Some(tally), Some(course)) = (tallies.last_mut(), motion.phases.last()) {
+        tally.note(Constraint::MeanSpeed, Units::mean_speed(mean_speed, speed), course.duration);
     }
 
     let worst = tallies.iter().filter_map(|t| t.worst(description)).min_by(|a, b| a.margin.total_cmp(&b.margin));

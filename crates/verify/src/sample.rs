@@ -14,8 +14,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
     /// 1-based.
-    pub half_step: usize,
-    /// From the beginning of the half step, s.
+    #[serde(alias = "half_step")]
+    pub phase: usize,
+    /// From the beginning of the phase, s.
     pub t: f64,
     pub q: Vec<f64>,
     pub qd: Vec<f64>,
@@ -36,17 +37,17 @@ pub struct Sample {
 /// As for [`verify`](super::verify).
 pub fn sample(description: &Description, motion: &Motion, points: usize) -> Result<Vec<Sample>, VerifyError> {
     check(description, motion, points)?;
-    let mut samples = Vec::with_capacity(points * motion.half_steps.len());
+    let mut samples = Vec::with_capacity(points * motion.phases.len());
     let mut state = State::new(description);
     // Where positions of a phase are from.
     let mut origin: Vec3 = Vec3::zeros();
-    for (i, half_step) in motion.half_steps.iter().enumerate() {
-        let mut phase = Phase::new(description, half_step, contact(description, &motion.half_steps, i), i + 1)?;
+    for (i, course) in motion.phases.iter().enumerate() {
+        let mut phase = Phase::new(description, course, contact(description, &motion.phases, i), i + 1)?;
         for k in 0..points {
-            let t = half_step.duration * (k as f64 / (points - 1) as f64);
+            let t = course.duration * (k as f64 / (points - 1) as f64);
             phase.at(t, &mut state)?;
             samples.push(Sample {
-                half_step: i + 1,
+                phase: i + 1,
                 t,
                 q: state.q.clone(),
                 qd: state.qd.clone(),

@@ -173,7 +173,7 @@ impl<'a, T: Scalar, G: Geometry<T>> Support<'a, T, G> {
         let feet = [0, 1].map(|leg| *self.multibody.foot(leg));
         let origin = self.leg.map_or_else(|| self.multibody.centre(), |leg| feet[leg]);
         // How deep the hips are does not matter in the plane.
-        let seen = |v| G::in_space(if self.multibody.description().lateral { v } else { G::flattened(v) });
+        let seen = |v| G::in_space(if self.multibody.description().is_spatial() { v } else { G::flattened(v) });
         // In flight what is left of it is rounding.
         state.force = if self.leg.is_some() { G::in_space(force) } else { Vec3::zeros() };
         state.platform = seen(-origin.position);

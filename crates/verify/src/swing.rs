@@ -2,7 +2,7 @@
 //! which it stays.
 
 use super::constraint::Constraint;
-use piaffe_model::motion::HalfStep;
+use piaffe_model::motion::Course;
 use piaffe_model::{Description, Mode};
 use piaffe_number::Scalar;
 
@@ -23,7 +23,7 @@ pub struct Swing<T = f64> {
 }
 
 /// Of the feet in the air in phase `index`.
-pub fn swings<T: Scalar>(description: &Description, phases: &[HalfStep<T>], index: usize) -> Vec<Swing<T>> {
+pub fn swings<T: Scalar>(description: &Description, phases: &[Course<T>], index: usize) -> Vec<Swing<T>> {
     let count = phases.len();
     // What stands `steps` phases later or earlier, in the legs' names of this phase.
     let mode = |steps: isize| description.mode(index as isize + steps);

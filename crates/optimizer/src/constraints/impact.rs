@@ -12,7 +12,7 @@ use piaffe_number::Scalar;
 #[derive(Clone, Debug)]
 pub struct ImpactConstraints<T = f64> {
     friction: T,
-    lateral: bool,
+    spatial: bool,
     /// The robot's units of an impulse and of a velocity.
     unit: f64,
     speed: f64,
@@ -36,7 +36,7 @@ impl<T: Scalar> ImpactConstraints<T> {
         };
         Some(ImpactConstraints {
             friction,
-            lateral: description.lateral,
+            spatial: description.is_spatial(),
             unit: units.impulse(),
             speed: units.speed(),
             y,
@@ -46,7 +46,7 @@ impl<T: Scalar> ImpactConstraints<T> {
 
     /// Which limit value `i` is.
     pub fn limit(&self, i: usize) -> Limit {
-        match (i, self.lateral) {
+        match (i, self.spatial) {
             (0, _) => Limit::VerticalImpulse,
             (1, _) | (2, false) => Limit::ImpulseFriction,
             _ if i < self.of_virtual_leg() => Limit::Leaving,
@@ -60,7 +60,7 @@ impl<T: Scalar> ImpactConstraints<T> {
     }
 
     fn of_virtual_leg(&self) -> usize {
-        let of_impulse = if self.lateral { 2 } else { 3 };
+        let of_impulse = if self.spatial { 2 } else { 3 };
         of_impulse + self.y.leaving.len()
     }
 
@@ -85,7 +85,7 @@ impl<T: Scalar> ImpactConstraints<T> {
             return self.friction_of_foot(mu, foot, |k| y[self.index(k)]) / unit;
         }
         let impulse = self.y.impulse.of(y);
-        match (i, self.lateral) {
+        match (i, self.spatial) {
             (0, _) => impulse[UP] / unit,
             (1, true) => (mu * impulse[UP] - norm(impulse)) / unit,
             (1, false) => (mu * impulse[UP] + impulse[FORWARD]) / unit,
@@ -108,7 +108,7 @@ impl ImpactConstraints {
             return (0..5).for_each(|k| add(self.index(k), gradient[k] / self.unit));
         }
         let (mu, impulse) = (self.friction / self.unit, self.y.impulse);
-        match (i, self.lateral) {
+        match (i, self.spatial) {
             (0, _) => add(impulse.place(UP), 1.0 / self.unit),
             (1, true) => {
                 let norm = norm(impulse.of(y)).max(TINY * self.unit);
@@ -135,7 +135,7 @@ impl ImpactConstraints {
             }
             return;
         }
-        if !(self.lateral && i == 1) {
+        if !(self.spatial && i == 1) {
             return;
         }
         let norm = norm(self.y.impulse.of(y)).max(TINY * self.unit);

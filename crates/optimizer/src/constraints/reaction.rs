@@ -13,7 +13,7 @@ pub fn constraints<T: Scalar>(d: &Description, limits: &Limits<T>, y: &Quantitie
         -limits.min_vertical_force,
         vec![(y.force(1), T::from(1.0))],
     )];
-    if d.lateral {
+    if d.is_spatial() {
         let form = Form::Cone { normal: y.force(1), factor: limits.friction, tangential: vec![y.force(0), y.force(2)] };
         list.push(PathConstraint::new(Limit::Friction, weight, form));
     } else {

@@ -23,7 +23,7 @@ const SAME: f64 = 1e-9;
 
 /// Whether real legs need constraints of their own: asked for, and not settled by an equal share.
 pub fn applies(d: &Description) -> bool {
-    d.limits.real_legs && d.lateral
+    d.limits.real_legs && d.is_spatial()
 }
 
 /// Whether impacts can pitch the robot, so that it must be forbidden: hips off the mass centre or rotors make them.
@@ -37,12 +37,12 @@ pub fn pitches(d: &Description) -> bool {
 
 /// Why the constraints cannot be imposed, if they cannot.
 pub fn obstacle(d: &Description) -> Option<String> {
-    if !d.lateral {
+    if !d.is_spatial() {
         return None;
     }
     if d.then == Then::Repeat {
         return Some(format!(
-            "limits at each real leg need half steps that mirror each other; those of the {} do not",
+            "limits at each real leg need a cycle whose halves mirror each other; those of the {} do not",
             d.gait
         ));
     }

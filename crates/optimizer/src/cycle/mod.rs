@@ -30,7 +30,7 @@ use dip::Dip;
 pub use halt::Halt;
 use hessian::Workspace;
 use phase::Phase;
-use piaffe_model::motion::{Costs, Criterion, HalfStep, Motion};
+use piaffe_model::motion::{Costs, Course, Criterion, Motion};
 use piaffe_model::units::Units;
 use piaffe_model::{Description, Gait, Limit};
 pub use problem::Place;
@@ -39,14 +39,14 @@ use rows::Rows;
 pub use sample::Sample;
 pub use still::{AT_REST, Still};
 
-/// Elements per half step, of 4 intervals each: more where the polynomials of eq. 15 may bend more often.
+/// Elements per phase, of 4 intervals each: more where the polynomials of eq. 15 may bend more often.
 ///
 /// With so many, least criteria of most robots are within 3·10⁻⁷ of those on finer meshes; see [`Cycle::finer`].
 pub fn elements(d: &Description) -> usize {
     d.polynomial_order + 1
 }
 
-/// Elements are halved where that changes β or β̇ at the end of a half step by more than this, in the robot's units, or at low
+/// Elements are halved where that changes β or β̇ at the end of a phase by more than this, in the robot's units, or at low
 /// speeds by more than this times twice the speed: the travel has to be the one asked, however short it is;
 const RESOLUTION: f64 = 1e-7;
 /// until there are so many times as many.
@@ -57,7 +57,7 @@ const ANGLE: f64 = 0.3;
 const RATE: f64 = 0.525;
 const DURATION: f64 = 0.57;
 
-/// A half step shorter than this, in the robot's unit of time, is no motion.
+/// A phase shorter than this, in the robot's unit of time, is no motion.
 const SHORTEST: f64 = 5e-4;
 
 /// Speeds below this, in the robot's unit, are met as closely as positions are known, not as closely as others.
@@ -95,7 +95,7 @@ pub struct Cycle<'a> {
     workspace: Workspace,
 }
 
-/// Where the variables of a half step stand among its own.
+/// Where the variables of a phase stand among its own.
 #[derive(Clone, Debug)]
 pub struct Variables {
     orientations: usize,
@@ -139,7 +139,7 @@ impl Variables {
         2 * self.orientations + self.interior * self.prescribed
     }
 
-    /// Variables of one half step.
+    /// Variables of one phase.
     pub fn per_phase(&self) -> usize {
         self.duration() + 1
     }
@@ -148,7 +148,7 @@ impl Variables {
         self.phases * self.per_phase()
     }
 
-    /// q and q̇ at the end of a half step.
+    /// q and q̇ at the end of a phase.
     pub fn end_state(&self, own: &[f64], q: &mut [f64], qd: &mut [f64]) {
         for k in 0..self.orientations {
             q[k] = own[self.q(k)];
@@ -164,7 +164,7 @@ pub struct Label {
     /// What it is of; empty where there is but one.
     pub of: String,
     /// 1-based.
-    pub half_step: usize,
+    pub phase: usize,
     /// s.
     pub time: f64,
 }
@@ -181,7 +181,7 @@ impl<'a> Cycle<'a> {
         Self::with_elements(gait, criterion, speed, elements(gait.description()))
     }
 
-    /// The same with another number of elements per half step: few will do far from an optimum.
+    /// The same with another number of elements per phase: few will do far from an optimum.
     pub fn with_elements(gait: &'a dyn Gait, criterion: Criterion, speed: f64, elements: usize) -> Cycle<'a> {
         let d = gait.description();
         let variables = Variables::new(d);
@@ -257,17 +257,17 @@ impl<'a> Cycle<'a> {
         self.gait
     }
 
-    /// Number of half steps that define the gait.
+    /// Number of phases that define the gait.
     pub fn phases(&self) -> usize {
         self.phases.len()
     }
 
-    /// Number of collocation nodes of a half step.
+    /// Number of collocation nodes of a phase.
     pub fn nodes(&self, phase: usize) -> usize {
         self.phases[phase].mesh.nodes.len()
     }
 
-    /// Node `node` as a share of its half step.
+    /// Node `node` as a share of its phase.
     pub fn instant(&self, phase: usize, node: usize) -> f64 {
         self.phases[phase].mesh.nodes[node].0
     }
@@ -282,7 +282,7 @@ impl<'a> Cycle<'a> {
         self.phases[phase].instants.row(node)
     }
 
-    /// Looks at share `s` of a half step, between its nodes, in the last simulated motion.
+    /// Looks at share `s` of a phase, between its nodes, in the last simulated motion.
     ///
     /// # Errors
     /// If the equations admit no such state.
@@ -325,7 +325,7 @@ impl<'a> Cycle<'a> {
         }
     }
 
-    /// Values of the rows between nodes in the last simulated motion (scaled), per half step.
+    /// Values of the rows between nodes in the last simulated motion (scaled), per phase.
     pub fn dip_values(&self) -> Vec<Vec<f64>> {
         let value =
             |p: &Phase, dip: &Dip| p.lowest(&p.path[dip.constraint], dip.element, dip.lowest.at).value + dip.offset;
@@ -355,7 +355,7 @@ impl<'a> Cycle<'a> {
         Ok(())
     }
 
-    /// The half step before `k`.
+    /// The phase before `k`.
     fn before(&self, k: usize) -> usize {
         (k + self.phases.len() - 1) % self.phases.len()
     }
@@ -432,14 +432,14 @@ impl<'a> Cycle<'a> {
         self.equality_rows.resize(self.rows.equations.len() * self.dimension(), 0.0);
     }
 
-    /// Partial derivatives of the objective in the quantities of the nodes of a half step: node, quantity, derivative.
+    /// Partial derivatives of the objective in the quantities of the nodes of a phase: node, quantity, derivative.
     pub fn objective_partials(&self, phase: usize) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
         let p = &self.phases[phase];
         let share = p.duration() * self.per_work();
         p.cost.partials.iter().map(move |(node, quantity, partial)| (*node, *quantity, share * partial))
     }
 
-    /// Derivatives of the objective in the dry friction of joints, in a half step, where torques and rates stay: joint, derivative.
+    /// Derivatives of the objective in the dry friction of joints, in a phase, where torques and rates stay: joint, derivative.
     pub fn objective_by_coulomb(&self, phase: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let p = &self.phases[phase];
         let share = p.duration() * self.per_work();
@@ -504,7 +504,7 @@ impl<'a> Cycle<'a> {
         let d = self.description();
         let prescribed =
             |values: &[f64]| -> Vec<f64> { (0..d.prescribed()).map(|j| values[d.prescribed_index(j)]).collect() };
-        let half_step = |p: &Phase| HalfStep {
+        let course = |p: &Phase| Course {
             duration: p.duration(),
             q_initial: prescribed(&p.q_start),
             qd_initial: prescribed(&p.qd_start),
@@ -518,14 +518,14 @@ impl<'a> Cycle<'a> {
             beta_final: p.q_end[d.unactuated],
             betad_final: p.qd_end[d.unactuated],
         };
-        Motion { half_steps: self.phases.iter().map(half_step).collect() }
+        Motion { phases: self.phases.iter().map(course).collect() }
     }
 }
 
 /// Θ of a motion.
 pub fn theta(motion: &Motion) -> Vec<f64> {
     let mut theta = Vec::new();
-    for h in &motion.half_steps {
+    for h in &motion.phases {
         theta.extend_from_slice(&h.q_final);
         theta.push(h.beta_final);
         theta.extend_from_slice(&h.qd_final);

@@ -104,13 +104,13 @@ impl Cycle<'_> {
             Place::Instant { phase, share, constraint } => Label {
                 limit: self.phases[phase].path[constraint].limit,
                 of: self.phases[phase].path[constraint].of.clone(),
-                half_step: phase + 1,
+                phase: phase + 1,
                 time: share * self.phases[phase].duration(),
             },
             Place::Impact { phase, constraint } => Label {
                 limit: self.phases[phase].impact.as_ref().map_or(Limit::Touchdown, |impact| impact.limit(constraint)),
                 of: String::new(),
-                half_step: phase + 1,
+                phase: phase + 1,
                 time: self.phases[phase].duration(),
             },
         }
@@ -118,7 +118,7 @@ impl Cycle<'_> {
 
     /// Which equality `i` is, in words.
     pub fn equality_label(&self, i: usize) -> Label {
-        let label = |limit, half_step, time| Label { limit, of: String::new(), half_step, time };
+        let label = |limit, phase, time| Label { limit, of: String::new(), phase, time };
         let at_end = |limit, phase: usize| label(limit, phase + 1, self.phases[phase].duration());
         match self.rows.equations[i] {
             Equation::ClosureOfBeta(phase) => at_end(Limit::ClosureOfBeta, phase),
@@ -146,7 +146,7 @@ impl Cycle<'_> {
 
     /// Which variable's bound `i` is, in words: only durations are bounded.
     pub fn bound_label(&self, i: usize) -> Label {
-        Label { limit: Limit::Duration, of: String::new(), half_step: i / self.variables.per_phase() + 1, time: 0.0 }
+        Label { limit: Limit::Duration, of: String::new(), phase: i / self.variables.per_phase() + 1, time: 0.0 }
     }
 
     /// ∂parameters/∂Θ of every phase. Flights come first: of a landing, the initial state of the next phase depends on the parabola.

@@ -1,7 +1,7 @@
-//! Joints that a half step holds still.
+//! Joints that a phase holds still.
 //!
 //! While a joint moves, the kinks of |Γ q̇| are isolated instants and least energy is a smooth function of Θ. But it often pays
-//! to hold a joint, a stance knee say, for a whole half step: q̇ = 0 throughout, and the criterion itself has a kink there. Such
+//! to hold a joint, a stance knee say, for a whole phase: q̇ = 0 throughout, and the criterion itself has a kink there. Such
 //! an optimum is no stationary point, and no sequence of smooth steps finds it.
 //!
 //! Θ is kept *on* the kink by equations: a rate is a polynomial, and zero where it is zero at as many instants as it has
@@ -20,7 +20,7 @@ use piaffe_sqp::dot;
 /// A joint that moves by less than this, in parts of the fastest joint's rate, is at rest: what equations leave of its rate.
 pub const AT_REST: f64 = 1e-6;
 
-/// A joint in a half step.
+/// A joint in a phase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Still {
     pub phase: usize,
@@ -102,7 +102,7 @@ impl Cycle<'_> {
         })
     }
 
-    /// The instants at which the power of a held joint has a kink: half step, joint, node.
+    /// The instants at which the power of a held joint has a kink: phase, joint, node.
     pub fn resting(&self) -> impl Iterator<Item = (usize, usize, usize)> + '_ {
         let held = self.held().filter(|_| !self.by_equations);
         held.flat_map(|Still { phase, joint }| {

@@ -1,9 +1,9 @@
-//! Where a half step is looked at: elements, their nodes, and the polynomials' basis at each.
+//! Where a phase is looked at: elements, their nodes, and the polynomials' basis at each.
 
 use crate::lgl::{Lobatto, NODES};
 use crate::trajectory::{Basis, Jet};
 
-/// Discretization of one half step.
+/// Discretization of one phase.
 #[derive(Clone, Debug)]
 pub struct Mesh {
     pub elements: usize,

@@ -86,7 +86,7 @@ pub struct Lift<'a> {
 }
 
 impl<'a> Lift<'a> {
-    /// At equally spaced times, both ends of each half step among them.
+    /// At equally spaced times, both ends of each phase among them.
     ///
     /// # Errors
     /// If there is no model of the whole robot or no such motion.
@@ -95,7 +95,7 @@ impl<'a> Lift<'a> {
         Lift::new(gait, &walk.moments, &walk)
     }
 
-    /// At multiples of 1/`rate` (Hz), and at the end of each half step.
+    /// At multiples of 1/`rate` (Hz), and at the end of each phase.
     ///
     /// # Errors
     /// As for [`Lift::even`].

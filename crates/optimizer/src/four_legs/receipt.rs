@@ -8,7 +8,7 @@ use piaffe_model::Gait;
 use piaffe_model::motion::Motion;
 use serde::{Deserialize, Serialize};
 
-/// Intervals of each half step between the instants that are looked at.
+/// Intervals of each phase between the instants that are looked at.
 const INTERVALS: usize = 400;
 /// The part of weight, or of weight × leg length, that may be lacking. Masses and mass centres of a robot are hardly known
 /// better, and a foot that is no point presses a hundredth of a leg's length beside its middle.
@@ -50,7 +50,8 @@ pub struct Worst {
     /// Least margin over all limits of the real legs, in natural units; negative: no shares keep to them.
     pub margin: f64,
     /// 1-based.
-    pub half_step: usize,
+    #[serde(alias = "half_step")]
+    pub phase: usize,
     /// From the beginning of the step, s.
     pub time: f64,
     /// What is in the way of more.
@@ -98,10 +99,10 @@ impl RealLegs {
         let limits = Limits { legs: &lift.legs };
         let worst = |all: &mut dyn Iterator<Item = (f64, usize, f64, &[(Limit, f64)])>| {
             let found = all.min_by(|a, b| a.0.total_cmp(&b.0));
-            let (margin, half_step, time, binding) = found.unwrap_or((f64::NAN, 0, 0.0, &[]));
+            let (margin, phase, time, binding) = found.unwrap_or((f64::NAN, 0, 0.0, &[]));
             let binding =
                 binding.iter().map(|(l, weight)| Binding { limit: limits.name(*l), weight: rounded(*weight) });
-            Worst { margin, half_step: half_step + 1, time, binding: binding.collect() }
+            Worst { margin, phase: phase + 1, time, binding: binding.collect() }
         };
         let (instants, impacts) = (&lift.instants, &lift.impacts);
         let most =

@@ -13,7 +13,7 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 struct Row {
     t: f64,
     /// Of all phases of the step, 1-based.
-    half_step: usize,
+    phase: usize,
     /// Platform's mass centre, its velocity and acceleration; world axes.
     position: Point,
     velocity: Point,
@@ -42,7 +42,7 @@ fn rows<'l>(lift: &'l Lift<'_>) -> impl Iterator<Item = Row> + 'l {
         let three = |v: &[f64], at: usize| [v[at], v[at + 1], v[at + 2]];
         Row {
             t: i.time,
-            half_step: i.phase + 1,
+            phase: i.phase + 1,
             position: p.position,
             velocity: p.outside(three(&p.u, 0)),
             acceleration: p.outside(three(&p.ud, 0)),
@@ -68,7 +68,7 @@ fn names(lift: &Lift) -> (Vec<&'static str>, Vec<&'static str>) {
 /// A row per moment and one per impact (the last of a phase, where the impulses are not zero); SI units.
 pub fn csv(lift: &Lift) -> String {
     let (joints, legs) = names(lift);
-    let mut header: Vec<String> = vec!["t".into(), "half_step".into()];
+    let mut header: Vec<String> = vec!["t".into(), "phase".into()];
     for of in ["", "d", "dd"] {
         header.extend(AXES.map(|axis| format!("{axis}{of}")));
     }
@@ -88,7 +88,7 @@ pub fn csv(lift: &Lift) -> String {
     for (row, instant) in rows(lift).zip(&lift.instants) {
         let impact = lift.impacts.iter().find(|i| (i.phase, i.time) == (instant.phase, instant.time));
         let impulse = impact.map_or(vec![0.0; 3 * legs.len()], |i| i.impulses.concat());
-        let platform = [&[row.t, row.half_step as f64][..], &row.position, &row.velocity, &row.acceleration].concat();
+        let platform = [&[row.t, row.phase as f64][..], &row.position, &row.velocity, &row.acceleration].concat();
         let turn = [&row.quaternion[..], &row.omega, &row.omegad].concat();
         let joints = [row.q, row.qd, row.qdd, row.torque].concat();
         let all = [platform, turn, joints, row.force.concat(), impulse, vec![row.margin, row.remainder]].concat();
@@ -113,7 +113,7 @@ pub fn json(lift: &Lift) -> Value {
         };
         json!({
             "t": i.time,
-            "half_step": i.phase + 1,
+            "phase": i.phase + 1,
             "before": speeds(&i.posture.u),
             "after": speeds(&after),
             "impulse": i.impulses,

@@ -120,6 +120,6 @@ impl Worst {
     /// Margin, time and what is in the way.
     pub fn words(&self) -> String {
         let limits: Vec<&str> = self.binding.iter().map(|b| b.limit.as_str()).collect();
-        format!("{:.4} (half step {}, t = {:.3} s: {})", self.margin, self.half_step, self.time, limits.join(", "))
+        format!("{:.4} (phase {}, t = {:.3} s: {})", self.margin, self.phase, self.time, limits.join(", "))
     }
 }

@@ -1,4 +1,4 @@
-//! From derivatives in the state of an instant to derivatives in the parameters of its half step, and back.
+//! From derivatives in the state of an instant to derivatives in the parameters of its phase, and back.
 //!
 //! The *state* of an instant is q, q̇, q̈ and, because some quantities depend on them directly, the parameters from the duration on.
 //! A weighted sum of many gradients is taken there, where they are short, and pulled to the parameters once.

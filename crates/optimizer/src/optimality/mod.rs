@@ -39,9 +39,11 @@ pub struct Optimality {
 /// The multiplier of a constraint at a time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Price {
+    #[serde(deserialize_with = "piaffe_model::limit::name")]
     pub constraint: String,
     /// 1-based.
-    pub half_step: usize,
+    #[serde(alias = "half_step")]
+    pub phase: usize,
     /// s.
     pub time: f64,
     /// Criterion per natural unit of the constraint, that of durations √(leg/gravity); of limits positive.
@@ -97,7 +99,7 @@ pub fn optimality(gait: &dyn Gait, criterion: Criterion, speed: f64, motion: &Mo
 impl Price {
     /// That of a bound: positive at the lower one, negative at the upper.
     fn of_bound(self) -> Price {
-        let limit = if self.value > 0.0 { Limit::ShortestHalfStep } else { Limit::LongestHalfStep };
+        let limit = if self.value > 0.0 { Limit::ShortestPhase } else { Limit::LongestPhase };
         Price { constraint: limit.name().into(), value: self.value.abs(), ..self }
     }
 }
@@ -106,7 +108,7 @@ impl Price {
 fn prices(values: &[f64], unit: f64, label: impl Fn(usize) -> Label) -> Vec<Price> {
     let price = |(i, value): (usize, &f64)| {
         let label = label(i);
-        Price { constraint: label.name(), half_step: label.half_step, time: label.time, value: unit * value }
+        Price { constraint: label.name(), phase: label.phase, time: label.time, value: unit * value }
     };
     values.iter().enumerate().filter(|(_, value)| **value != 0.0).map(price).collect()
 }
@@ -188,7 +190,7 @@ impl<'a> Linearized<'a> {
         let mut names = Vec::new();
         for i in active.filter(|i| !priced.contains(&kind(*i))) {
             let label = cycle.label(i);
-            let name = format!("{} (half step {})", label.name(), label.half_step);
+            let name = format!("{} (phase {})", label.name(), label.phase);
             if !names.contains(&name) {
                 names.push(name);
             }

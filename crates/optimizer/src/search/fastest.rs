@@ -31,6 +31,7 @@ pub struct MaximumSpeed {
     /// The greatest speed with a feasible motion, as far as local searches can tell; after [`MaximumSpeed::optima`] one with an optimum.
     pub speed: f64,
     /// What conflicts just above it, weightiest first.
+    #[serde(deserialize_with = "piaffe_model::limit::names")]
     pub ended_by: Vec<String>,
     /// A motion at this speed, as variables Θ; of no criterion.
     theta: Vec<f64>,
@@ -75,7 +76,7 @@ fn climb(gait: &dyn Gait, speed: f64, from: &[f64], settings: &Settings) -> Opti
     // The answer is what stands against the question.
     conflicts.retain(|c| !c.label.limit.is_asked());
     conflicts.sort_by(|a, b| b.weight.total_cmp(&a.weight));
-    let ended_by = conflicts.iter().map(|c| format!("{} (half step {})", c.label.name(), c.label.half_step)).collect();
+    let ended_by = conflicts.iter().map(|c| format!("{} (phase {})", c.label.name(), c.label.phase)).collect();
     Some(MaximumSpeed { speed: good, ended_by, theta })
 }
 

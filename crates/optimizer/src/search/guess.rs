@@ -5,9 +5,9 @@
 //! any leg, kept near a nominal posture inside the joint ranges.
 
 use nalgebra::{DMatrix, DVector};
-use piaffe_model::motion::{HalfStep, Motion};
+use piaffe_model::motion::{Course, Motion};
 use piaffe_model::units::Units;
-use piaffe_model::{Description, FORWARD, Gait, Mode, Rotation, UP};
+use piaffe_model::{Description, FORWARD, Gait, Mode, Rotation, UP, other_leg};
 use std::f64::consts::{PI, TAU};
 
 /// What distinguishes one start from another.
@@ -83,7 +83,7 @@ fn duration(d: &Description, k: usize, t: f64) -> f64 {
 }
 
 /// Where the feet and the platform are over the gait's phases, in the world.
-struct Course<'a> {
+struct Paths<'a> {
     d: &'a Description,
     plan: &'a Plan,
     durations: Vec<f64>,
@@ -112,9 +112,9 @@ pub fn walk(gait: &dyn Gait, plan: &Plan, speed: f64) -> Motion {
             durations[k] = (durations[k] * longest / (speed.abs() * total)).max(shortest * 1.05);
         }
     }
-    let course = Course { d, plan, durations, speed };
-    let half_steps = (0..d.phases.len()).map(|k| phase(gait, &course, k, &nominal)).collect();
-    Motion { half_steps }
+    let paths = Paths { d, plan, durations, speed };
+    let phases = (0..d.phases.len()).map(|k| course(gait, &paths, k, &nominal)).collect();
+    Motion { phases }
 }
 
 /// The posture of a plan with both feet under their hips, as far as the stops admit it: whatever a joint's zero means.
@@ -154,12 +154,12 @@ fn turned(angle: f64, [lo, hi]: [f64; 2]) -> f64 {
     nearest.clamp(lo, hi)
 }
 
-fn phase(gait: &dyn Gait, course: &Course, k: usize, nominal: &[f64]) -> HalfStep {
+fn course(gait: &dyn Gait, paths: &Paths, k: usize, nominal: &[f64]) -> Course {
     let d = gait.description();
-    let t = course.durations[k];
+    let t = paths.durations[k];
     // Where feet are from each other, either tells.
     let foot = d.phases[k].mode.stance().unwrap_or_default();
-    let solve = |s: f64, near: &[f64]| inverse_kinematics(gait, Mode::Stance(foot), &course.target(k, s, foot), near);
+    let solve = |s: f64, near: &[f64]| inverse_kinematics(gait, Mode::Stance(foot), &paths.target(k, s, foot), near);
     let start = solve(0.0, nominal);
     let end = solve(1.0, nominal);
     let interior_times = d.polynomial_order - 3;
@@ -171,7 +171,7 @@ fn phase(gait: &dyn Gait, course: &Course, k: usize, nominal: &[f64]) -> HalfSte
         |from: &[f64], to: &[f64]| -> Vec<f64> { from.iter().zip(to).map(|(a, b)| (b - a) / (delta * t)).collect() };
     let initial_rate = rate(&start, &solve(delta, &start));
     let final_rate = rate(&solve(1.0 - delta, &end), &end);
-    HalfStep {
+    Course {
         duration: t,
         q_initial: prescribed(&start),
         qd_initial: prescribed(&initial_rate),
@@ -185,12 +185,12 @@ fn phase(gait: &dyn Gait, course: &Course, k: usize, nominal: &[f64]) -> HalfSte
     }
 }
 
-impl Course<'_> {
+impl Paths<'_> {
     /// Platform and the other foot from the foot of leg `foot`, at share `s` of phase `k`.
     fn target(&self, k: usize, s: f64, foot: usize) -> Target {
         let (platform, feet) = (self.platform(k, s), [0, 1].map(|leg| self.foot(k as isize, s, leg)));
         let from = |at: [f64; 2]| [0, 1].map(|c| at[c] - feet[foot][c]);
-        Target { platform: from(platform), other: from(feet[1 - foot]) }
+        Target { platform: from(platform), other: from(feet[other_leg(foot)]) }
     }
 
     fn duration(&self, i: isize) -> f64 {

@@ -485,7 +485,7 @@ fn conflicts(cycle: &Cycle, solution: &Solution) -> Vec<Conflict> {
         // Neighbouring instants of one constraint are one participant: its worst.
         match list
             .iter_mut()
-            .find(|c| (c.label.limit, &c.label.of, c.label.half_step) == (label.limit, &label.of, label.half_step))
+            .find(|c| (c.label.limit, &c.label.of, c.label.phase) == (label.limit, &label.of, label.phase))
         {
             Some(known) if known.violation >= violation => known.weight += weight,
             Some(known) => *known = Conflict { label, violation, weight: known.weight + weight },

@@ -12,7 +12,7 @@ use crate::instant::Glance;
 use crate::lgl::NODES;
 use crate::polynomial::evaluate;
 
-/// Points of the grid per half step.
+/// Points of the grid per phase.
 const GRID: usize = 240;
 /// Constraints above this (scaled) are left alone.
 const NEAR: f64 = 2e-3;
@@ -44,7 +44,7 @@ struct Dip {
 
 impl Dips {
     /// Imposes the constraints where they dip in the same motion, the last one that `cycle` has simulated. Tells by how much that
-    /// changes each row between nodes that there was, per half step (scaled; 0 for rows that hold nothing before or after).
+    /// changes each row between nodes that there was, per phase (scaled; 0 for rows that hold nothing before or after).
     ///
     /// # Errors
     /// If the equations admit no state at some instant.
@@ -112,9 +112,9 @@ pub fn dips(cycle: &Cycle) -> Result<Dips, Undefined> {
     Ok(result)
 }
 
-/// What of a half step is worth a look.
+/// What of a phase is worth a look.
 struct Suspects {
-    /// In order, as shares of the half step, and the nodes that they are: all nodes, and the grid in the elements where
+    /// In order, as shares of the phase, and the nodes that they are: all nodes, and the grid in the elements where
     /// some constraint comes near zero.
     instants: Vec<(f64, Option<usize>)>,
     /// Which come near zero anywhere.

@@ -1,7 +1,7 @@
 //! Gaits of one robot that differ in their flights alone: a walk, and what runs in its steps. What is known of one is a start for
 //! the other.
 
-use piaffe_model::motion::{HalfStep, Motion};
+use piaffe_model::motion::{Course, Motion};
 use piaffe_model::{Description, Mode};
 
 /// A motion of `from` as one of `to`, if both move the robot alike and stand in the same order: flights that `to` has not are
@@ -12,17 +12,17 @@ pub fn related(from: &Description, motion: &Motion, to: &Description) -> Option<
     if !alike || !move_alike(from, to) {
         return None;
     }
-    let mut half_steps = Vec::new();
+    let mut phases = Vec::new();
     for (known, wanted) in own.iter().zip(&wanted) {
-        let support = motion.half_steps.get(known.phase)?;
-        half_steps.push(support.clone());
+        let support = motion.phases.get(known.phase)?;
+        phases.push(support.clone());
         if let Some(flight) = wanted.flight {
             let [shortest, _] = to.phases[flight].duration;
-            let known = known.flight.and_then(|flight| motion.half_steps.get(flight));
-            half_steps.push(known.cloned().unwrap_or_else(|| going_on(support, shortest)));
+            let known = known.flight.and_then(|flight| motion.phases.get(flight));
+            phases.push(known.cloned().unwrap_or_else(|| going_on(support, shortest)));
         }
     }
-    Some(Motion { half_steps })
+    Some(Motion { phases })
 }
 
 /// A phase on a foot, and the flight that follows it if one does.
@@ -54,12 +54,12 @@ fn move_alike(a: &Description, b: &Description) -> bool {
 }
 
 /// A flight in which all joints, and what is not driven, go on at the rates at which a support ended.
-fn going_on(support: &HalfStep, duration: f64) -> HalfStep {
+fn going_on(support: &Course, duration: f64) -> Course {
     let after = |share: f64| -> Vec<f64> {
         support.q_final.iter().zip(&support.qd_final).map(|(q, rate)| q + share * duration * rate).collect()
     };
     let times = support.q_interior.len();
-    HalfStep {
+    Course {
         duration,
         q_initial: support.q_final.clone(),
         qd_initial: support.qd_final.clone(),

@@ -12,7 +12,7 @@ use crate::instant::Quantities;
 use crate::optimality::Linearized;
 use crate::swing::{Of, Swing, swings};
 use num_traits::Zero;
-use piaffe_model::motion::{HalfStep, Motion};
+use piaffe_model::motion::{Course, Motion};
 use piaffe_model::{Description, Lever, Mode, UP};
 use piaffe_number::{Dual, Scalar};
 use piaffe_verify::contact::Contact;
@@ -95,7 +95,7 @@ impl<'a> Slopes<'a> {
         let mut travel = Number::zero();
         for (k, end) in ends.iter().enumerate() {
             let before = (k + d.phases.len() - 1) % d.phases.len();
-            lagrangian += self.half_step(&numbers, &limits, k, ends[before].rates(d), &mut travel)?;
+            lagrangian += self.phase(&numbers, &limits, k, ends[before].rates(d), &mut travel)?;
             if let (End::Lands(landing), Some(impact)) =
                 (end, ImpactConstraints::with(d, d.transition(k), limits.friction))
             {
@@ -109,7 +109,7 @@ impl<'a> Slopes<'a> {
                     }
                 }
             }
-            let bounds = self.motion.half_steps.len();
+            let bounds = self.motion.phases.len();
             let own = m.bounds.len() / bounds;
             let nu = m.bounds[(k + 1) * own - 1];
             lagrangian += limits.durations[k][usize::from(nu < 0.0)].scale(nu);
@@ -138,13 +138,13 @@ impl<'a> Slopes<'a> {
     }
 
     /// All phases, where Θ has them.
-    fn phases(&self) -> Vec<HalfStep<Number>> {
-        self.motion.half_steps.iter().map(HalfStep::cast).collect()
+    fn phases(&self) -> Vec<Course<Number>> {
+        self.motion.phases.iter().map(Course::cast).collect()
     }
 
     /// How phase `k` ends, where Θ has it.
     fn end(&self, numbers: &Numbers<Number>, k: usize) -> Option<End> {
-        let (d, h) = (self.d, &self.motion.half_steps[k]);
+        let (d, h) = (self.d, &self.motion.phases[k]);
         let constants = |values: Vec<f64>| -> Vec<Number> { values.into_iter().map(Number::constant).collect() };
         let q = constants(d.complete(&h.q_final, h.beta_final));
         let qd = constants(d.complete(&h.qd_final, h.betad_final));
@@ -166,7 +166,7 @@ impl<'a> Slopes<'a> {
     }
 
     /// Its part of L, but for how it ends; `rates` are those with which the phase before ends. Adds to the travel.
-    fn half_step(
+    fn phase(
         &self,
         numbers: &Numbers<Number>,
         limits: &Limits<Number>,
@@ -175,17 +175,17 @@ impl<'a> Slopes<'a> {
         travel: &mut Number,
     ) -> Option<Number> {
         let (d, cycle, m) = (self.d, &self.linearized.cycle, &self.linearized.multipliers);
-        let mut half_step: HalfStep<Number> = self.motion.half_steps[k].cast();
+        let mut course: Course<Number> = self.motion.phases[k].cast();
         let rate = |index: usize| {
             let (from, sign) = d.renamed((k + d.phases.len() - 1) % d.phases.len(), index);
             rates[from].scale(sign)
         };
-        half_step.qd_initial = (0..d.prescribed()).map(|j| rate(d.prescribed_index(j))).collect();
-        half_step.betad_initial = rate(d.unactuated);
-        let duration = self.motion.half_steps[k].duration;
+        course.qd_initial = (0..d.prescribed()).map(|j| rate(d.prescribed_index(j))).collect();
+        course.betad_initial = rate(d.unactuated);
+        let duration = self.motion.phases[k].duration;
         let (mode, swings) = (cycle.mode(k), swings(d, k));
         let mut phase =
-            Phase::with(d, numbers.clone(), &half_step, Contact::of(d, numbers, &self.phases(), k), k + 1).ok()?;
+            Phase::with(d, numbers.clone(), &course, Contact::of(d, numbers, &self.phases(), k), k + 1).ok()?;
 
         // β and σ at the end: these numbers change σ(q, q̇) of the wanted end and of the motion's alike.
         let [beta, betad] = phase.beta_end();
@@ -241,9 +241,9 @@ impl<'a> Slopes<'a> {
         Some(lagrangian)
     }
 
-    /// ∂σ/∂β and ∂σ/∂β̇ at the end of half step `k`.
+    /// ∂σ/∂β and ∂σ/∂β̇ at the end of phase `k`.
     fn momentum_at_end(&self, k: usize) -> [f64; 2] {
-        let (d, h) = (self.d, &self.motion.half_steps[k]);
+        let (d, h) = (self.d, &self.motion.phases[k]);
         let nq = d.orientations();
         let mode = self.linearized.cycle.mode(k);
         let shape = &d.shape(mode).momentum;

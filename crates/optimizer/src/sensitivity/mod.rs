@@ -20,6 +20,7 @@ pub struct Sensitivities {
     pub slopes: Vec<Sensitivity>,
     /// Constraints that are active without a price: the optimum may change its active set right here, and then slopes hold to
     /// one side only.
+    #[serde(deserialize_with = "piaffe_model::limit::names")]
     pub one_sided: Vec<String>,
 }
 

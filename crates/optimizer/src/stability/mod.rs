@@ -45,7 +45,7 @@ pub struct Stability {
 /// If the motion has not the numbers that the gait needs; `verify` tells.
 pub fn stability(gait: &dyn Gait, motion: &Motion) -> Result<Stability, Undefined> {
     let d = gait.description();
-    let count = motion.half_steps.len();
+    let count = motion.phases.len();
     let passages = (0..count).map(|k| Passage::new(gait, motion, k)).collect::<Result<Vec<_>, _>>()?;
     // The legs swap roles: two like halves are a step.
     let repeats = if d.then == Then::Mirrored { 2 } else { 1 };

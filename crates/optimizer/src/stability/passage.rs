@@ -2,7 +2,7 @@
 
 use crate::cycle::elements;
 use crate::flow::{self, Flow, Layout, Mesh, Undefined};
-use piaffe_model::motion::{HalfStep, Motion};
+use piaffe_model::motion::{Course, Motion};
 use piaffe_model::{Description, FORWARD, Gait, Mode, Transition, UP};
 use piaffe_sqp::dot;
 
@@ -89,12 +89,12 @@ impl Passage {
     /// If the equations admit no such motion.
     pub fn new(gait: &dyn Gait, motion: &Motion, k: usize) -> Result<Passage, Undefined> {
         let d = gait.description();
-        let next = (k + 1) % motion.half_steps.len();
+        let next = (k + 1) % motion.phases.len();
         let mode = d.phases[k].mode;
-        let half_step = &motion.half_steps[k];
+        let course = &motion.phases[k];
         let mesh = Mesh::new(elements(d), d.polynomial_order);
         let layout = Layout::new(d, k, &mesh.basis);
-        let parameters = parameters(gait, half_step, mode, &layout);
+        let parameters = parameters(gait, course, mode, &layout);
         let mut flow = Flow::new(d, &mesh, k);
         flow.integrate(gait, mode, &mesh, &parameters)?;
         flow.differentiate(gait, mode, &mesh, &parameters);
@@ -105,7 +105,7 @@ impl Passage {
         let mut instant = |share: f64| {
             flow.at(gait, mode, &mesh, &parameters, share, &mut at)?;
             let state = State { q: at.q.clone(), qd: at.qd.clone(), qdd: acceleration(gait, mode, &at) };
-            Ok(Instant { time: share * half_step.duration, state, sigma: at.sigma })
+            Ok(Instant { time: share * course.duration, state, sigma: at.sigma })
         };
         let instants: Result<Vec<Instant>, Undefined> =
             (0..=INSTANTS).map(|i| instant(i as f64 / INSTANTS as f64)).collect();
@@ -115,12 +115,12 @@ impl Passage {
         Ok(Passage {
             index: k,
             mode,
-            duration: half_step.duration,
+            duration: course.duration,
             flow: [row(&flow.beta_p), row(&flow.sigma_p)],
             crossing: Crossing::new(gait, motion, k, &end.state),
             end,
             instants,
-            next: Start::new(gait, &motion.half_steps[next], d.phases[next].mode),
+            next: Start::new(gait, &motion.phases[next], d.phases[next].mode),
         })
     }
 
@@ -136,7 +136,7 @@ impl Passage {
 }
 
 /// Local parameters of a phase: see `flow`. Those that (β, σ) do not depend on stay zero.
-fn parameters(gait: &dyn Gait, h: &HalfStep, mode: Mode, layout: &Layout) -> Vec<f64> {
+fn parameters(gait: &dyn Gait, h: &Course, mode: Mode, layout: &Layout) -> Vec<f64> {
     let mut parameters = vec![0.0; layout.len()];
     for j in 0..layout.prescribed {
         let own = &mut parameters[layout.joint(j, 0)..][..layout.per_joint];
@@ -191,14 +191,14 @@ impl Crossing {
 
 /// The mass centre's velocity at the end of a flight `k`, forward and up, m/s.
 fn falling(gait: &dyn Gait, motion: &Motion, k: usize) -> [f64; 2] {
-    let (d, count) = (gait.description(), motion.half_steps.len());
+    let (d, count) = (gait.description(), motion.phases.len());
     let before = (k + count - 1) % count;
     let Transition::TakeOff(leg) = d.transition(before) else { return [f64::NAN; 2] };
-    let h = &motion.half_steps[before];
+    let h = &motion.phases[before];
     let (q, qd) = (d.complete(&h.q_final, h.beta_final), d.complete(&h.qd_final, h.betad_final));
     let takeoff = takeoff(gait, leg, &q, &qd);
     let velocity = d.shapes.takeoff.v.of(&takeoff);
-    [velocity[FORWARD], velocity[UP] - d.gravity * motion.half_steps[k].duration]
+    [velocity[FORWARD], velocity[UP] - d.gravity * motion.phases[k].duration]
 }
 
 /// The take-off of a foot: its kernel, with accelerations that are of no matter here.
@@ -209,7 +209,7 @@ fn takeoff(gait: &dyn Gait, leg: usize, q: &[f64], qd: &[f64]) -> Vec<f64> {
 }
 
 impl Start {
-    fn new(gait: &dyn Gait, h: &HalfStep, mode: Mode) -> Start {
+    fn new(gait: &dyn Gait, h: &Course, mode: Mode) -> Start {
         let d = gait.description();
         let (q, qd) = (d.complete(&h.q_initial, h.beta_initial), d.complete(&h.qd_initial, h.betad_initial));
         let mut momentum = d.shape(mode).momentum.zeros();

@@ -4,18 +4,18 @@
 //! coordinate of the path, σ = σ*(τ) τ̇, where σ* is that of the gait, and with the same moment of gravity as there,
 //!
 //! ```text
-//! d(σ²/2)/dτ = d(σ*²/2)/dτ:    σ²/2 − σ*²/2 is kept along a half step
+//! d(σ²/2)/dτ = d(σ*²/2)/dτ:    σ²/2 − σ*²/2 is kept along a support
 //! ```
 //!
 //! Impacts are linear in the velocities and keep the path, so σ⁺/σ⁻ is that of the gait. Hence (σ² − σ*²)/2 is multiplied,
 //! from step to step, by
 //!
 //! ```text
-//! Π (σ*(0)/σ*(T))²  over the half steps
+//! Π (σ*(0)/σ*(T))²  over the supports
 //! ```
 //!
 //! The gait recovers exactly if gravity speeds it up between landings, which take from its momentum what gravity has given.
-//! Nothing of this holds where σ* vanishes inside a half step: there all velocities along the path have the same σ. Nor in flight,
+//! Nothing of this holds where σ* vanishes inside a support: there all velocities along the path have the same σ. Nor in flight,
 //! where the robot that is slower falls as fast: it does not stay on its path.
 
 use super::halving;
@@ -34,7 +34,7 @@ pub enum PhaseTracking {
         factor: f64,
         /// Steps until a deviation is halved; none if it grows.
         steps_to_halve: Option<f64>,
-        /// Slowest entry into the first half step, as a share of the gait's speed there, from which the robot does not fall
+        /// Slowest entry into the first support, as a share of the gait's speed there, from which the robot does not fall
         /// back in this step.
         slowest_entry: f64,
     },
@@ -42,7 +42,8 @@ pub enum PhaseTracking {
     /// another speed than the gait's.
     Singular {
         /// 1-based.
-        half_step: usize,
+        #[serde(alias = "half_step")]
+        phase: usize,
         /// s.
         time: f64,
     },
@@ -53,13 +54,13 @@ pub enum PhaseTracking {
 }
 
 impl PhaseTracking {
-    /// From the half steps that define the gait, of which a step is `repeats` rounds.
+    /// From the supports that define the gait, of which a step is `repeats` rounds.
     pub fn new(gait: &dyn Gait, passages: &[Passage], repeats: usize) -> PhaseTracking {
         if gait.description().has(Mode::Flight) {
             return PhaseTracking::Flight;
         }
-        if let Some((half_step, time)) = passages.iter().enumerate().find_map(|(k, p)| Some((k + 1, vanishing(p)?))) {
-            return PhaseTracking::Singular { half_step, time };
+        if let Some((phase, time)) = passages.iter().enumerate().find_map(|(k, p)| Some((k + 1, vanishing(p)?))) {
+            return PhaseTracking::Singular { phase, time };
         }
         let Some(phase) = phase(gait, passages) else { return PhaseTracking::NoPhase };
         // (σ² − σ*²)/2 in terms of that at the entry; the robot falls back where it takes σ² below zero.

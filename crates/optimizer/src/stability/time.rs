@@ -30,7 +30,7 @@ use serde::{Deserialize, Serialize};
 pub enum Clock {
     /// The gait keeps its period, however late a foot lands.
     RunsOn,
-    /// The next half step begins when the foot lands.
+    /// The next phase begins when the foot lands.
     StartsAnew,
 }
 

@@ -16,9 +16,9 @@ impl fmt::Display for PhaseTracking {
                 fate(f, *factor, *steps_to_halve)?;
                 write!(f, "; entered slower than at {:.0} % of its speed, it falls back", 100.0 * slowest_entry)
             }
-            PhaseTracking::Singular { half_step, time } => write!(
+            PhaseTracking::Singular { phase, time } => write!(
                 f,
-                "not possible for all joints at once: the momentum about the stance foot vanishes in half step {half_step} at {time:.3} s"
+                "not possible for all joints at once: the momentum about the stance foot vanishes in phase {phase} at {time:.3} s"
             ),
             PhaseTracking::NoPhase => write!(f, "not possible: no quantity of the posture grows all the time"),
             PhaseTracking::Flight => {

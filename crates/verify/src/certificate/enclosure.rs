@@ -19,7 +19,7 @@ use crate::margins::Units;
 use crate::numbers::Numbers;
 use num_traits::Zero;
 use piaffe_model::Description;
-use piaffe_model::motion::HalfStep;
+use piaffe_model::motion::Course;
 use piaffe_number::Dual;
 use piaffe_number::Scalar;
 
@@ -27,9 +27,9 @@ use piaffe_number::Scalar;
 const TUBE: f64 = 1e-6;
 /// Pieces with a greater defect are halved; in the square of that unit.
 const DEFECT: f64 = 1e-9;
-/// A half step begins with 2 to the power of this many pieces.
+/// A phase begins with 2 to the power of this many pieces.
 const COARSEST: i32 = 3;
-/// No piece is smaller than 2 to the power of minus this, in half steps.
+/// No piece is smaller than 2 to the power of minus this, as a share of the phase.
 const FINEST: i32 = 14;
 /// Number of coefficients of functions of time. The polynomial for β̈ has two fewer, so that integrals fit.
 pub const ORDER: usize = 11;
@@ -42,10 +42,10 @@ pub type Model = Taylor<ORDER>;
 /// Of ∂g/∂β and ∂g/∂β̇ only the size matters, for which few coefficients do.
 type Gradient = Dual<Taylor<4>, 2>;
 
-/// β and β̇ over a share of the half step, as functions of τ from −1 to 1.
+/// β and β̇ over a share of the phase, as functions of τ from −1 to 1.
 #[derive(Clone, Copy, Debug)]
 pub struct Piece {
-    /// Share of the half step, s = t/T.
+    /// Share of the phase, s = t/T.
     pub share: Model,
     pub beta: [Model; 2],
 }
@@ -57,7 +57,7 @@ impl Piece {
     }
 }
 
-/// Why there is no enclosure from this share of the half step on.
+/// Why there is no enclosure from this share of the phase on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lost {
     pub share: f64,
@@ -67,10 +67,10 @@ pub struct Lost {
 ///
 /// # Errors
 /// If no piece, however small, has a proof.
-pub fn enclose(description: &Description, phases: &[HalfStep], index: usize) -> Result<Vec<Piece>, Lost> {
-    let half_step = &phases[index];
+pub fn enclose(description: &Description, phases: &[Course], index: usize) -> Result<Vec<Piece>, Lost> {
+    let course = &phases[index];
     let mut solver = Solver::new(description, phases, index);
-    let mut start = [half_step.beta_initial, half_step.betad_initial].map(Ball::from);
+    let mut start = [course.beta_initial, course.betad_initial].map(Ball::from);
     let mut pieces = Vec::new();
     // Shares of a power of two are exact: (how many of them lie before, power).
     let mut ahead: Vec<(u32, i32)> = (0..1 << COARSEST).rev().map(|k| (k, COARSEST)).collect();
@@ -90,7 +90,7 @@ pub fn enclose(description: &Description, phases: &[HalfStep], index: usize) -> 
 }
 
 /// The instants of phase `index` in numbers of any kind.
-pub fn instants<'a, T: Scalar>(description: &'a Description, phases: &[HalfStep], index: usize) -> Instants<'a, T> {
+pub fn instants<'a, T: Scalar>(description: &'a Description, phases: &[Course], index: usize) -> Instants<'a, T> {
     let contact = contact(description, phases, index);
     Instants::new(description, Numbers::new(description), &phases[index].cast(), contact)
 }
@@ -107,21 +107,21 @@ struct Solver<'a> {
 }
 
 impl<'a> Solver<'a> {
-    fn new(description: &'a Description, phases: &[HalfStep], index: usize) -> Self {
-        let half_step = &phases[index];
+    fn new(description: &'a Description, phases: &[Course], index: usize) -> Self {
+        let course = &phases[index];
         let node = |k| -libm::cos(std::f64::consts::PI * (k as f64 + 0.5) / ACCELERATION as f64);
         Solver {
             plain: instants(description, phases, index),
             model: instants(description, phases, index),
             gradient: instants(description, phases, index),
             states: (State::new(description), State::new(description), State::new(description)),
-            duration: half_step.duration,
+            duration: course.duration,
             rate: Units::new(description).rate(),
             nodes: std::array::from_fn(node),
         }
     }
 
-    /// The piece from `start`, with its proof; `half` is half its length in half steps, a power of two.
+    /// The piece from `start`, with its proof; `half` is half its length as a share of the phase, a power of two.
     fn piece(&mut self, share: Model, half: f64, start: [Ball; 2]) -> Option<Piece> {
         // Exact, since `half` is a power of two.
         let half_time = half * self.duration;
@@ -204,9 +204,9 @@ mod tests {
     use super::*;
     use piaffe::gaits::GAITS;
 
-    fn half_step(d: &Description) -> HalfStep {
+    fn course(d: &Description) -> Course {
         let list = |x: f64| (0..d.prescribed()).map(|k| x * if k % 2 == 0 { 0.4 } else { -0.7 }).collect();
-        HalfStep {
+        Course {
             duration: 0.2,
             q_initial: list(1.0),
             qd_initial: list(3.0),
@@ -235,7 +235,7 @@ mod tests {
     fn errors_of_the_polynomial_and_of_the_start_are_within_the_proof() {
         for gait in GAITS {
             let d = gait.description();
-            let h = half_step(d);
+            let h = course(d);
             let mut solver = Solver::new(d, std::slice::from_ref(&h), 0);
             let half = 1.0 / 64.0;
             let share = Model::polynomial(&[half, half]);

@@ -26,7 +26,7 @@ use crate::{SMALLEST_GRID, VerifyError, check};
 use enclosure::{Model, Piece, enclose, instants};
 use num_traits::Zero;
 use piaffe_model::Description;
-use piaffe_model::motion::{HalfStep, Motion};
+use piaffe_model::motion::{Course, Motion};
 use piaffe_number::Scalar;
 use proof::{Judge, Proof};
 use serde::{Deserialize, Serialize};
@@ -59,21 +59,24 @@ impl Standing {
 pub struct Certificate {
     pub standing: Standing,
     pub tolerance: f64,
-    /// Of every constraint and half step, the margin below which it certainly does not fall.
+    /// Of every constraint and phase, the margin below which it certainly does not fall.
     pub bounds: Vec<Bound>,
     /// Where that is not enough.
     pub gaps: Vec<Gap>,
     /// The distance from a closed cycle is certainly not greater; absent if β could not be followed.
     pub cycle_error: Option<f64>,
-    pub half_steps: Vec<Enclosure>,
+    #[serde(alias = "half_steps")]
+    pub phases: Vec<Enclosure>,
 }
 
 /// A margin that was proven.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bound {
+    #[serde(deserialize_with = "piaffe_model::limit::name")]
     pub constraint: String,
     /// 1-based.
-    pub half_step: usize,
+    #[serde(alias = "half_step")]
+    pub phase: usize,
     /// For all times, the margin is not below this. Absent if nothing could be proven.
     pub margin: Option<f64>,
 }
@@ -82,10 +85,12 @@ pub struct Bound {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Gap {
     /// A constraint, or `β` from where it could not be followed.
+    #[serde(deserialize_with = "piaffe_model::limit::name")]
     pub constraint: String,
     /// 1-based.
-    pub half_step: usize,
-    /// s, from the beginning of the half step.
+    #[serde(alias = "half_step")]
+    pub phase: usize,
+    /// s, from the beginning of the phase.
     pub from: f64,
     pub to: f64,
     /// What was reached: the margin is not below. Absent if nothing could be proven.
@@ -94,7 +99,7 @@ pub struct Gap {
     pub violated: bool,
 }
 
-/// How a half step was enclosed.
+/// How a phase was enclosed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Enclosure {
     /// Pieces on which β has a polynomial with a proof.
@@ -123,22 +128,22 @@ pub fn certify(description: &Description, motion: &Motion, speed: f64) -> Result
         bounds: Vec::new(),
         gaps: Vec::new(),
         cycle_error: None,
-        half_steps: Vec::new(),
+        phases: Vec::new(),
     };
-    let balls: Vec<_> = motion.half_steps.iter().map(|h| h.cast::<Ball>()).collect();
+    let balls: Vec<_> = motion.phases.iter().map(|h| h.cast::<Ball>()).collect();
     let units = Units::new(description);
     let (mut cycle_error, mut travel) = (0.0_f64, Ball::zero());
-    for (i, half_step) in motion.half_steps.iter().enumerate() {
-        let pieces = match enclose(description, &motion.half_steps, i) {
+    for (i, course) in motion.phases.iter().enumerate() {
+        let pieces = match enclose(description, &motion.phases, i) {
             Ok(pieces) => pieces,
             Err(lost) => {
-                certificate.gaps.push(Gap::of_beta(i + 1, lost.share * half_step.duration, half_step.duration));
+                certificate.gaps.push(Gap::of_beta(i + 1, lost.share * course.duration, course.duration));
                 return Ok(certificate);
             }
         };
-        let start = [half_step.beta_initial, half_step.betad_initial].map(Ball::from);
+        let start = [course.beta_initial, course.betad_initial].map(Ball::from);
         let end = pieces.last().map_or(start, |piece| piece.beta.map(|b| b.at(1.0)));
-        let mut proof = during(description, &motion.half_steps, i, &pieces);
+        let mut proof = during(description, &motion.phases, i, &pieces);
         travel += at_ends(description, &balls, i, [start, end], &mut proof);
         let at_impact = |constraint, margin: Ball| proof.note(constraint, &margin, [1.0, 1.0]);
         let distances = transition(description, Numbers::new(description), &balls, i, at_impact);
@@ -150,8 +155,8 @@ pub fn certify(description: &Description, motion: &Motion, speed: f64) -> Result
             proof.note(Constraint::MeanSpeed, &Units::mean_speed(travel / duration, speed), [1.0, 1.0]);
         }
         let width = end.map(|b| 2.0 * b.rest());
-        certificate.half_steps.push(Enclosure { subintervals: pieces.len(), evaluations: proof.evaluations, width });
-        certificate.take(description, i + 1, half_step.duration, &proof);
+        certificate.phases.push(Enclosure { subintervals: pieces.len(), evaluations: proof.evaluations, width });
+        certificate.take(description, i + 1, course.duration, &proof);
     }
     certificate.cycle_error = cycle_error.is_finite().then_some(cycle_error);
     if certificate.gaps.is_empty() && cycle_error <= TOLERANCE {
@@ -160,9 +165,9 @@ pub fn certify(description: &Description, motion: &Motion, speed: f64) -> Result
     Ok(certificate)
 }
 
-/// What must hold at every instant of half step `index`.
-fn during(description: &Description, phases: &[HalfStep], index: usize, pieces: &[Piece]) -> Proof {
-    let models: Vec<HalfStep<Model>> = phases.iter().map(HalfStep::cast).collect();
+/// What must hold at every instant of phase `index`.
+fn during(description: &Description, phases: &[Course], index: usize, pieces: &[Piece]) -> Proof {
+    let models: Vec<Course<Model>> = phases.iter().map(Course::cast).collect();
     let mut judge = Judge {
         instants: instants(description, phases, index),
         swings: swings(description, &models, index),
@@ -177,22 +182,22 @@ fn during(description: &Description, phases: &[HalfStep], index: usize, pieces: 
     judge.proof
 }
 
-/// What must hold at the begin and the end of half step `index`, where β is in these balls. Returns the travel, m.
+/// What must hold at the begin and the end of phase `index`, where β is in these balls. Returns the travel, m.
 fn at_ends(
     description: &Description,
-    phases: &[HalfStep<Ball>],
+    phases: &[Course<Ball>],
     index: usize,
     [start, end]: [[Ball; 2]; 2],
     proof: &mut Proof,
 ) -> Ball {
     let units = Units::new(description);
-    let (numbers, half_step) = (Numbers::new(description), &phases[index]);
+    let (numbers, course) = (Numbers::new(description), &phases[index]);
     let contact = Contact::of(description, &numbers, phases, index);
-    let mut instants = Instants::new(description, numbers, half_step, contact);
+    let mut instants = Instants::new(description, numbers, course, contact);
     let swings = swings(description, phases, index);
     let mut at = |share: f64, beta: [Ball; 2]| {
         let mut state = State::new(description);
-        if instants.at(half_step.duration.scale(share), beta, &mut state).is_none() {
+        if instants.at(course.duration.scale(share), beta, &mut state).is_none() {
             state.platform.x = Ball::UNKNOWN;
             state.feet.iter_mut().chain(&mut state.feet_velocity).for_each(|foot| foot.y = Ball::UNKNOWN);
             state.feet_acceleration = [Ball::UNKNOWN; 2];
@@ -208,24 +213,24 @@ fn at_ends(
     if let Some(leg) = description.transition(index).lands() {
         proof.note(Constraint::Touchdown, &(-last.feet[leg].y.abs() / units.leg.into()), [1.0, 1.0]);
     }
-    units.duration(instants.numbers(), index, half_step.duration, |constraint, margin| {
+    units.duration(instants.numbers(), index, course.duration, |constraint, margin| {
         proof.note(constraint, &margin, [1.0, 1.0]);
     });
     last.platform.x - first.platform.x
 }
 
 impl Certificate {
-    /// Takes over what is known about a half step.
-    fn take(&mut self, description: &Description, half_step: usize, duration: f64, proof: &Proof) {
+    /// Takes over what is known about a phase.
+    fn take(&mut self, description: &Description, phase: usize, duration: f64, proof: &Proof) {
         let known = |bound: f64| bound.is_finite().then_some(bound);
         self.bounds.extend(proof.bounds.iter().map(|&(constraint, bound)| Bound {
             constraint: constraint.name(description),
-            half_step,
+            phase,
             margin: known(bound),
         }));
         self.gaps.extend(proof.gaps.iter().map(|gap| Gap {
             constraint: gap.constraint.name(description),
-            half_step,
+            phase,
             from: gap.from * duration,
             to: gap.to * duration,
             bound: known(gap.bound),
@@ -235,7 +240,7 @@ impl Certificate {
 }
 
 impl Gap {
-    fn of_beta(half_step: usize, from: f64, to: f64) -> Gap {
-        Gap { constraint: "β".into(), half_step, from, to, bound: None, violated: false }
+    fn of_beta(phase: usize, from: f64, to: f64) -> Gap {
+        Gap { constraint: "β".into(), phase, from, to, bound: None, violated: false }
     }
 }

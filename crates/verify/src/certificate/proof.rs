@@ -1,4 +1,4 @@
-//! The inequalities over a half step: each bounded from below on every piece, on smaller ones where that is not enough.
+//! The inequalities over a phase: each bounded from below on every piece, on smaller ones where that is not enough.
 
 use super::TOLERANCE;
 use super::enclosure::{Model, Piece};
@@ -11,10 +11,10 @@ use piaffe_number::Scalar;
 
 /// How often a piece is halved at most.
 const HALVINGS: usize = 20;
-/// Evaluations of a half step, after which what is undecided stays so.
+/// Evaluations of a phase, after which what is undecided stays so.
 const EVALUATIONS: usize = 4000;
 
-/// What is known about the constraints of a half step.
+/// What is known about the constraints of a phase.
 #[derive(Clone, Debug, Default)]
 pub struct Proof {
     /// Least margin that was proven, per constraint.
@@ -28,7 +28,7 @@ pub struct Proof {
 #[derive(Clone, Copy, Debug)]
 pub struct Gap {
     pub constraint: Constraint,
-    /// Shares of the half step.
+    /// Shares of the phase.
     pub from: f64,
     pub to: f64,
     /// What was proven: the margin is not below.
@@ -38,7 +38,7 @@ pub struct Gap {
 }
 
 impl Proof {
-    /// Notes what holds between two shares of the half step; those of a constraint come in order.
+    /// Notes what holds between two shares of the phase; those of a constraint come in order.
     pub fn note<const N: usize>(&mut self, constraint: Constraint, margin: &Taylor<N>, [from, to]: [f64; 2]) {
         let bound = margin.least();
         self.lower(constraint, bound);

@@ -1,4 +1,4 @@
-//! Second-order terms of all instants, in the local parameters of a half step: `Uᵀ G U` at every node, where G also has products of
+//! Second-order terms of all instants, in the local parameters of a phase: `Uᵀ G U` at every node, where G also has products of
 //! gradients of quantities, and products of gradients over several nodes.
 
 use super::PhaseWork;
