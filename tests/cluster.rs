@@ -5,8 +5,9 @@ use std::process::{Command, Output};
 
 const PAGE: &str = include_str!("../docs/cluster.md");
 
-/// Parts of the study here; the page has more.
+/// Parts of the study here; the page has more. And robots of each: so many that a task is killed before it is done with them.
 const PARTS: usize = 4;
+const ROBOTS: usize = 16;
 
 /// What stands in the place of Slurm. It reads from the script what Slurm reads.
 const SBATCH: &str = r#"#!/bin/bash
@@ -59,7 +60,7 @@ fn run(folder: &Path, command: &str) {
 fn a_job_array_gives_the_table_of_a_single_machine() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
-    let masses = (0..2 * PARTS).map(|k| format!("{}\n", 1.4 + 0.05 * k as f64));
+    let masses = (0..ROBOTS * PARTS).map(|k| format!("{}\n", 1.4 + 0.005 * k as f64));
     std::fs::write(at("designs.csv"), format!("links.thigh.mass\n{}", masses.collect::<String>())).unwrap();
     std::fs::write(at("study.sh"), with_few_parts(&block("#SBATCH"))).unwrap();
     std::fs::write(at("sbatch"), SBATCH).unwrap();

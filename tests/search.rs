@@ -3,6 +3,7 @@
 use piaffe::gaits::GAITS;
 use piaffe::model::Gait;
 use piaffe::motion::Criterion;
+use piaffe::search::evidence::Effort;
 use piaffe::search::multi_start::{Found, Settings, search};
 
 fn named(name: &str) -> &'static dyn Gait {
@@ -52,10 +53,6 @@ fn optima_that_few_starts_reach_are_found() {
     let found = searched("curvet", 0.2, &Settings::default());
     let best = &found.optima[0];
     assert!(best.local.costs.torque < 960.0, "{} {:?}", best.local.costs.torque, found.effort);
-    assert!(
-        2 * best.reached < found.effort.successes && found.effort.starts > 40,
-        "{} {:?}",
-        best.reached,
-        found.effort
-    );
+    let Effort { starts, successes, .. } = found.effort;
+    assert!(4 * best.reached < successes && starts > 2 * 8, "{} {:?}", best.reached, found.effort);
 }

@@ -155,6 +155,22 @@ fn models_are_sharp() {
     assert!(root.rest() < 1e-13 && (root - sin).magnitude() < 1e-13);
 }
 
+/// The least value of a polynomial is found, not merely bounded.
+#[test]
+fn the_least_value_is_met() {
+    let mut rng = fastrand::Rng::with_seed(5);
+    for _ in 0..200 {
+        let degree = rng.usize(0..=10);
+        let c: Vec<f64> = (0..=degree).map(|_| 2.0 * rng.f64() - 1.0).collect();
+        let value = |tau: f64| c.iter().rev().fold(0.0, |sum, c| sum * tau + c);
+        let seen = (0..=20_000).map(|k| value(k as f64 / 1e4 - 1.0)).fold(f64::INFINITY, f64::min);
+        let least = Taylor::<11>::polynomial(&c).least();
+        // Between two of these places it is lower by at most an eighth of the second derivative times the square of their distance.
+        assert!(least <= seen && seen - least < 1e-6, "{c:?}: {least} of {seen}");
+        assert!(seen - least < 1e-9 || degree > 1, "{c:?}: {least} of {seen}");
+    }
+}
+
 #[test]
 fn what_is_undefined_is_unknown() {
     let across = Taylor::<4>::polynomial(&[0.1, 1.0]);

@@ -21,6 +21,9 @@ const BATCH: usize = 8;
 /// As many at first where they only confirm an optimum that neighbours let expect, and how many of them must end in one.
 const CONFIRMING: usize = 4;
 const AGREEING: usize = 2;
+/// How many starts must have led to the best optimum, where as many as a search takes at least have led to several, to one that neighbours
+/// do not lead to.
+const AGAIN: usize = 3;
 /// As many where neighbours let expect that there is no motion.
 const IN_VAIN: usize = 2;
 
@@ -168,16 +171,16 @@ fn is_confirmed(expected: Expected, so_far: &Found, carried: &[End], same: impl 
         Expected::Nothing => false,
         Expected::NoMotion => starts >= IN_VAIN && so_far.optima.is_empty(),
         Expected::Theirs(looked) => {
-            let theirs = |best: &Optimum| {
-                carried.iter().any(|end| end.local.status.is_optimal() && same(&end.local, &best.local))
-            };
-            // Where there are several optima, a few starts do not tell which is the best; with those of the neighbours they may, if
-            // these have as many. As many starts as a search takes at least may, if some of them have come to that of the neighbours.
+            let Some(best) = so_far.optima.first() else { return false };
             let optima = so_far.optima.len();
-            let settled = optima == 1
-                || (optima <= looked.optima && so_far.effort.with(looked).is_enough())
-                || (starts >= LEAST && so_far.optima.first().is_some_and(|best| best.reached >= AGREEING));
-            starts >= CONFIRMING && successes >= AGREEING && so_far.optima.first().is_some_and(theirs) && settled
+            let theirs = carried.iter().any(|end| end.local.status.is_optimal() && same(&end.local, &best.local));
+            // Where there are several optima, a few starts do not tell which is the best; with those of the neighbours they may, if
+            // these have as many.
+            let settled = optima == 1 || (optima <= looked.optima && so_far.effort.with(looked).is_enough());
+            let few = starts >= CONFIRMING && successes >= AGREEING && theirs && settled;
+            // What so many starts have found again and again is not passed by: what is found at other speeds comes here too.
+            let some = starts >= LEAST && best.reached >= if theirs { AGREEING } else { AGAIN };
+            few || some
         }
     }
 }

@@ -9,6 +9,7 @@
 //! [`constraint`](crate::constraint); nor at the impacts; and the motion closes to a cycle within 1e-6. A margin
 //! of a foot in the air is here its plain height over its curve; at both ends of the swing, where that is zero, its steepness counts.
 
+mod bernstein;
 pub mod enclosure;
 mod functions;
 mod proof;
@@ -145,14 +146,14 @@ pub fn certify(description: &Description, motion: &Motion, speed: f64) -> Result
         let end = pieces.last().map_or(start, |piece| piece.beta.map(|b| b.at(1.0)));
         let mut proof = during(description, &motion.phases, i, &pieces);
         travel += at_ends(description, &balls, i, [start, end], &mut proof);
-        let at_impact = |constraint, margin: Ball| proof.note(constraint, &margin, [1.0, 1.0]);
+        let at_impact = |constraint, margin: Ball| proof.note(constraint, margin.range(), [1.0, 1.0]);
         let distances = transition(description, Numbers::new(description), &balls, i, at_impact);
         let all =
             distances.map_or(vec![Ball::UNKNOWN], |found| [found, closure(&units, &balls[i], end).to_vec()].concat());
         cycle_error = all.iter().map(Ball::magnitude).fold(cycle_error, f64::max);
         if i + 1 == balls.len() {
             let duration = balls.iter().fold(Ball::zero(), |sum, h| sum + h.duration);
-            proof.note(Constraint::MeanSpeed, &Units::mean_speed(travel / duration, speed), [1.0, 1.0]);
+            proof.note(Constraint::MeanSpeed, Units::mean_speed(travel / duration, speed).range(), [1.0, 1.0]);
         }
         let width = end.map(|b| 2.0 * b.rest());
         certificate.phases.push(Enclosure { subintervals: pieces.len(), evaluations: proof.evaluations, width });
@@ -204,17 +205,17 @@ fn at_ends(
         }
         for swing in &swings {
             if let Some(steep) = steepness(instants.numbers(), &state, swing, share == 1.0) {
-                proof.note(swing.constraint, &(steep / units.leg.into()), [share, share]);
+                proof.note(swing.constraint, (steep / units.leg.into()).range(), [share, share]);
             }
         }
         state
     };
     let [first, last] = [at(0.0, start), at(1.0, end)];
     if let Some(leg) = description.transition(index).lands() {
-        proof.note(Constraint::Touchdown, &(-last.feet[leg].y.abs() / units.leg.into()), [1.0, 1.0]);
+        proof.note(Constraint::Touchdown, (-last.feet[leg].y.abs() / units.leg.into()).range(), [1.0, 1.0]);
     }
     units.duration(instants.numbers(), index, course.duration, |constraint, margin| {
-        proof.note(constraint, &margin, [1.0, 1.0]);
+        proof.note(constraint, margin.range(), [1.0, 1.0]);
     });
     last.platform.x - first.platform.x
 }

@@ -2,7 +2,6 @@
 
 use super::TOLERANCE;
 use super::enclosure::{Model, Piece};
-use super::taylor::Taylor;
 use crate::constraint::Constraint;
 use crate::instants::{Instants, State};
 use crate::margins::{Units, clearance};
@@ -38,14 +37,13 @@ pub struct Gap {
 }
 
 impl Proof {
-    /// Notes what holds between two shares of the phase; those of a constraint come in order.
-    pub fn note<const N: usize>(&mut self, constraint: Constraint, margin: &Taylor<N>, [from, to]: [f64; 2]) {
-        let bound = margin.least();
+    /// Notes between which numbers a margin stays between two shares of the phase; those of a constraint come in order.
+    pub fn note(&mut self, constraint: Constraint, [bound, most]: [f64; 2], [from, to]: [f64; 2]) {
         self.lower(constraint, bound);
         if bound >= -TOLERANCE {
             return;
         }
-        let violated = margin.bounds()[1] < -TOLERANCE;
+        let violated = most < -TOLERANCE;
         match self.gaps.iter_mut().rev().find(|gap| gap.constraint == constraint) {
             Some(gap) if gap.to == from => {
                 (gap.to, gap.bound) = (to, gap.bound.min(bound));
@@ -90,9 +88,10 @@ impl Judge<'_> {
             if open.is_some_and(|open| !open.contains(&constraint)) {
                 continue;
             }
-            let decided = margin.least() >= -TOLERANCE || margin.bounds()[1] < -TOLERANCE;
+            let range = margin.range();
+            let decided = range[0] >= -TOLERANCE || range[1] < -TOLERANCE;
             if decided || exhausted {
-                self.proof.note(constraint, &margin, ends);
+                self.proof.note(constraint, range, ends);
             } else {
                 undecided.push(constraint);
             }

@@ -1,12 +1,8 @@
 //! Between which numbers a Taylor model stays, as a whole and half by half.
 
+use super::bernstein::{Bernstein, CLOSE};
 use super::taylor::{Ball, Taylor, UNIT, above};
 use piaffe_number::Scalar;
-
-/// How often an interval is halved to see more closely.
-const HALVINGS: usize = 12;
-/// Bounds closer than this to a value that is taken need not be better.
-const CLOSE: f64 = 1e-10;
 
 impl<const N: usize> Taylor<N> {
     /// What |f| nowhere exceeds.
@@ -21,17 +17,18 @@ impl<const N: usize> Taylor<N> {
 
     /// The greatest lower bound of f that is worth finding.
     pub fn least(&self) -> f64 {
-        self.least_of(HALVINGS)
-    }
-
-    fn least_of(&self, halvings: usize) -> f64 {
         let floor = self.floor();
         let taken = [-1.0, 1.0].map(|end| self.at(end).value()).into_iter().fold(self.c[0], f64::min);
-        if halvings == 0 || floor >= taken - self.rest - CLOSE || !floor.is_finite() {
+        if floor >= taken - self.rest - CLOSE || !floor.is_finite() {
             return floor;
         }
-        let [left, right] = self.halves().map(|half| half.least_of(halvings - 1));
-        left.min(right).max(floor)
+        let (polynomial, rounding) = Bernstein::new(self);
+        (polynomial.least() - above(self.rest + rounding)).next_down().max(floor)
+    }
+
+    /// The same, and an upper bound that is exact up to second order.
+    pub fn range(&self) -> [f64; 2] {
+        [self.least(), self.bounds()[1]]
     }
 
     fn floor(&self) -> f64 {
