@@ -359,3 +359,29 @@ fn a_flat_valley_is_descended_in_long_steps() {
     assert!(solution.status.is_optimal() && (solution.objective - Valley::BEST).abs() < 1e-6, "{solution:?}");
     assert!(solution.iterations <= 20, "{}", solution.iterations);
 }
+
+/// Curvature is negative towards a bound on which the solution rests, and mixed with that along it.
+struct Ledge;
+
+impl Model<2> for Ledge {
+    const NAME: &'static str = "ledge";
+    const EQUALITIES: usize = 0;
+    const INEQUALITIES: usize = 0;
+    const START: [f64; 2] = [0.3, 1.0];
+    const LOWER: [f64; 2] = [0.0, -2.0];
+    const UPPER: [f64; 2] = [0.5, 2.0];
+    const BEST: f64 = -0.21480474685286194;
+    fn functions<T: Scalar>(x: &[T; 2], _: &mut [T], _: &mut [T]) -> T {
+        let [away, along] = *x;
+        away * 4.0 - away * away * 3.0 + away * along * 4.0 + along * along * along * along + along * along - along
+    }
+}
+
+#[test]
+fn on_a_bound_convergence_is_newtons() {
+    let options = Options { tolerance: 1e-12, ..Options::default() };
+    let solution = minimize(&mut Adapter::<Ledge, 2>::new(true), &Ledge::START, &options, &mut print);
+    assert!(solution.status.is_optimal() && (solution.objective - Ledge::BEST).abs() < 1e-14, "{solution:?}");
+    // Linearly it would take more than twenty.
+    assert!(solution.iterations <= 8, "{}", solution.iterations);
+}

@@ -3,6 +3,7 @@
 //! Only the curvature along the active constraints matters. By Finsler's lemma W + γAᵀA is positive definite for large γ
 //! exactly if W is so on the null space of the active normals A; and because (γ/2)‖Ad + b‖² vanishes on Ad + b = 0, adding it
 //! to the subproblem (with its linear part γAᵀb) changes neither step nor multipliers as long as these constraints stay active.
+//! Bounds on which variables rest are among them: without these, negative curvature towards a bound would cost all of Newton's convergence.
 //!
 //! If that is still indefinite, its negative eigenvalues change their sign, in a metric D that knows the variables' scales:
 //! directions of negative curvature are descended as fast as their curvature says, all others stay Newton's.
@@ -88,10 +89,19 @@ impl Convexifier {
             self.normal.fill(0.0);
             self.active.iter().for_each(|i| rank_one(1.0, qp.row(*i), &mut self.normal));
         }
+        let resting = |j: &usize| {
+            let at = |place: usize, bound: f64| bound == 0.0 && qp.hints[place] == Place::Working;
+            at(*j, qp.lower[*j]) || at(n + j, qp.upper[*j])
+        };
+        let mut any = !self.active.is_empty();
+        for j in (0..n).filter(|j| augment && resting(j)) {
+            self.normal[j * n + j] += 1.0;
+            any = true;
+        }
         let mut gamma = 0.0;
         let mut definite = false;
         for candidate in [1e1, 1e3] {
-            if self.active.is_empty() || definite {
+            if !any || definite {
                 break;
             }
             gamma = candidate * size;
@@ -100,7 +110,7 @@ impl Convexifier {
         }
         if !definite {
             // A moderate γ keeps the eigenvectors of the two parts apart well enough.
-            gamma = if self.active.is_empty() { 0.0 } else { 1e1 * size };
+            gamma = if any { 1e1 * size } else { 0.0 };
             self.augment(gamma);
             if !self.reflect(n, size) {
                 self.plain.copy_from_slice(model);

@@ -13,6 +13,7 @@ use crate::walk::{Moment, Point, Walk};
 use nalgebra::{DMatrix, DVector};
 use piaffe_model::Gait;
 use piaffe_model::motion::Motion;
+use rayon::prelude::*;
 
 /// Why there is no lifted motion.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -110,7 +111,9 @@ impl<'a> Lift<'a> {
     fn new(gait: &'a dyn Gait, moments: &[Moment], walk: &Walk) -> Result<Lift<'a>, NotLifted> {
         let no_whole = || NotLifted::NoWhole { gait: gait.description().key.into() };
         let legs = Legs::new(gait).ok_or_else(no_whole)?;
-        let instants = moments.iter().map(|m| legs.instant(m)).collect::<Result<_, _>>()?;
+        // Of several failures the first one is told.
+        let instants: Vec<_> = moments.par_iter().map(|m| legs.instant(m)).collect();
+        let instants = instants.into_iter().collect::<Result<_, _>>()?;
         // The last moment of each phase.
         let ends = |k: usize| moments.get(k + 1).is_none_or(|next| next.phase != moments[k].phase);
         let landings =

@@ -11,11 +11,12 @@
 //! Terms are summed into a matrix W with Hessian W + Wᵀ: a product of two gradients
 //! then is written once instead of twice.
 //!
-//! In the order of the computation: `weights`, `adjoint`, `instants`, `ends`; `products` of vectors and matrices.
+//! In the order of the computation: `weights`, `adjoint`, `instants` and each `node`, `ends`; `products` of vectors and matrices.
 
 mod adjoint;
 mod ends;
 mod instants;
+mod node;
 mod products;
 mod weights;
 
