@@ -126,7 +126,7 @@ pub fn search_watched(
     let mut first = 0;
     while first < most {
         let so_far = collect(task, &ends);
-        let confirmed = || is_confirmed(expected, &so_far, &ends[..neighbours.len()], |a, b| same(task, a, b));
+        let confirmed = || is_confirmed(task, expected, &so_far, &ends[..neighbours.len()]);
         if settings.starts.is_none() && (so_far.effort.is_enough() || confirmed()) {
             break;
         }
@@ -165,7 +165,7 @@ pub fn search_watched(
 }
 
 /// Whether a few starts of its own have confirmed what was expected of a search; `carried` are the ends of what neighbours gave.
-fn is_confirmed(expected: Expected, so_far: &Found, carried: &[End], same: impl Fn(&Local, &Local) -> bool) -> bool {
+fn is_confirmed(task: &Task, expected: Expected, so_far: &Found, carried: &[End]) -> bool {
     let Effort { starts, successes, .. } = so_far.effort;
     match expected {
         Expected::Nothing => false,
@@ -173,7 +173,7 @@ fn is_confirmed(expected: Expected, so_far: &Found, carried: &[End], same: impl 
         Expected::Theirs(looked) => {
             let Some(best) = so_far.optima.first() else { return false };
             let optima = so_far.optima.len();
-            let theirs = carried.iter().any(|end| end.local.status.is_optimal() && same(&end.local, &best.local));
+            let theirs = carried.iter().any(|end| end.local.status.is_optimal() && same(task, &end.local, &best.local));
             // Where there are several optima, a few starts do not tell which is the best; with those of the neighbours they may, if
             // these have as many.
             let settled = optima == 1 || (optima <= looked.optima && so_far.effort.with(looked).is_enough());
