@@ -18,12 +18,10 @@ const SAME_COST: f64 = 1e-5;
 /// Starts that run side by side; what they found decides whether more do.
 const BATCH: usize = 8;
 
-/// As many at first where they only confirm an optimum that neighbours let expect, and how many of them must end in one.
+/// As many at first where they only confirm an optimum that neighbours let expect, and how many of them must end in one; or, of as many as a
+/// search takes at least, in the best of several.
 const CONFIRMING: usize = 4;
-const AGREEING: usize = 2;
-/// How many starts must have led to the best optimum, where as many as a search takes at least have led to several, to one that neighbours
-/// do not lead to.
-const AGAIN: usize = 3;
+const AGREEING: usize = 3;
 /// As many where neighbours let expect that there is no motion.
 const IN_VAIN: usize = 2;
 
@@ -179,7 +177,7 @@ fn is_confirmed(task: &Task, expected: Expected, so_far: &Found, carried: &[End]
             let settled = optima == 1 || (optima <= looked.optima && so_far.effort.with(looked).is_enough());
             let few = starts >= CONFIRMING && successes >= AGREEING && theirs && settled;
             // What so many starts have found again and again is not passed by: what is found at other speeds comes here too.
-            let some = starts >= LEAST && best.reached >= if theirs { AGREEING } else { AGAIN };
+            let some = starts >= LEAST && best.reached >= AGREEING;
             few || some
         }
     }
