@@ -198,8 +198,8 @@ pub struct SearchEntry {
     pub seed: u64,
 }
 
-/// How near motions are, in natural sizes of the variables, that two ways have led to.
-const SAME_MOTION: f64 = 1e-4;
+/// How near to each other two descents to one optimum end, in natural sizes of the variables.
+const MET: f64 = 1e-4;
 
 impl LocalOptimum {
     /// Whether both are one optimum, met from two sides.
@@ -298,7 +298,7 @@ impl GaitResult {
     /// Tells whether it was new; without a receipt it does not count.
     pub fn join(&mut self, gait: &dyn Gait, local: &Local, examination: Examination) -> bool {
         // Before its verdict, which takes longer than the search did.
-        if !local.status.is_optimal() || self.is_motion(gait, local) {
+        if !local.status.is_optimal() || self.is_met_by(gait, local) {
             return false;
         }
         let mut candidate = GaitResult::empty(gait, self.criterion, self.speed, self.search);
@@ -320,8 +320,8 @@ impl GaitResult {
     }
 
     /// Whether the motion of `local` is this one.
-    fn is_motion(&self, gait: &dyn Gait, local: &Local) -> bool {
-        self.theta().is_some_and(|own| apart(gait.description(), &own, &local.theta) < SAME_MOTION)
+    fn is_met_by(&self, gait: &dyn Gait, local: &Local) -> bool {
+        self.theta().is_some_and(|own| apart(gait.description(), &own, &local.theta) < MET)
     }
 
     /// What tells it from others: gait, criterion, speed to its last digit, and whether the real legs are limited.
