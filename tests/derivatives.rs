@@ -149,6 +149,65 @@ fn gradients_agree_with_differences_for_every_gait_criterion_and_order() {
 }
 
 /// Gradient of the Lagrangian at `theta` with the given multipliers.
+/// What the power of a joint adds to the criterion in an element, where it keeps its sign there: all such elements of a motion add up to
+/// less than the criterion, and each has the gradient that differences have.
+#[test]
+fn folds_are_parts_of_the_criterion() {
+    let rub: Vec<_> = GAITS.iter().map(|gait| rubbing::dry(*gait)).collect();
+    for gait in GAITS.iter().copied().chain(rub.iter().map(|gait| gait as &dyn Gait)) {
+        let mut rng = fastrand::Rng::with_seed(7);
+        let mut cycle = Cycle::new(gait, Criterion::Energy, 0.6);
+        let mut values = Values::zeros(cycle.equalities(), cycle.inequalities());
+        let theta = loop {
+            let theta = theta(&walk(gait, &Plan::random(gait, &mut rng), 0.6));
+            let theta = off_turns(gait, theta, &cycle.scale(), &mut rng);
+            if cycle.evaluate(&theta, &mut values).is_ok() {
+                break theta;
+            }
+        };
+        let n = theta.len();
+        let mut row = vec![0.0; n];
+        let mut at = |theta: &[f64], row: &mut [f64]| -> (f64, Vec<Option<f64>>) {
+            cycle.evaluate(theta, &mut values).unwrap();
+            cycle.linearize(theta).unwrap();
+            let folds = (0..cycle.folds()).map(|i| {
+                row.fill(0.0);
+                cycle.fold(i, row)
+            });
+            (values.objective, folds.collect())
+        };
+        let (objective, folds) = at(&theta, &mut row);
+        let sum: f64 = folds.iter().flatten().sum();
+        let name = gait.description().key;
+        assert!(folds.iter().flatten().all(|c| *c > 0.0), "{name}");
+        assert!(sum > 0.2 * objective && sum <= (1.0 + 1e-12) * objective, "{name}: {sum} of {objective}");
+        for (i, fold) in folds.iter().enumerate().filter(|(i, fold)| i % 7 == 0 && fold.is_some()) {
+            let mut gradient = vec![0.0; n];
+            cycle.evaluate(&theta, &mut values).unwrap();
+            cycle.linearize(&theta).unwrap();
+            cycle.fold(i, &mut gradient);
+            for k in 0..n {
+                let h = 1e-6;
+                let [plus, minus] = [h, -h].map(|h| {
+                    let mut moved = theta.clone();
+                    moved[k] += h;
+                    cycle.evaluate(&moved, &mut values).unwrap();
+                    cycle.linearize(&moved).unwrap();
+                    cycle.fold(i, &mut row)
+                });
+                let (Some(plus), Some(minus)) = (plus, minus) else { continue };
+                let difference = (plus - minus) / (2.0 * h);
+                let size = gradient.iter().fold(1.0, |a: f64, b| a.max(b.abs()));
+                assert!(
+                    (difference - gradient[k]).abs() < 2e-6 * size,
+                    "{name}, fold {i} of {fold:?} by {k}: {difference}, {}",
+                    gradient[k]
+                );
+            }
+        }
+    }
+}
+
 fn lagrangian_gradient(cycle: &mut Cycle, theta: &[f64], lambda: &[f64], mu: &[f64], values: &mut Values) -> Vec<f64> {
     cycle.evaluate(theta, values).unwrap();
     cycle.linearize(theta).unwrap();

@@ -1,5 +1,7 @@
 //! The nonlinear program solver against published optima, oracles and its own laws.
 
+#[path = "sqp/folds.rs"]
+mod folds;
 #[path = "sqp/hock_schittkowski.rs"]
 mod hock_schittkowski;
 #[path = "sqp/jet.rs"]

@@ -55,7 +55,7 @@ impl<P: Problem> Run<'_, '_, P> {
             if violation - self.subproblem.linear_violation >= FAIR * violation {
                 return Ok(self.conclude(Kind::Elastic));
             }
-            self.subproblem.cap(self.prohibitive());
+            self.subproblem.cap(self.prohibitive(), true);
             self.subproblem.solve_again(&self.view)?;
         } else {
             self.plain_step(true, self.prohibitive())?;
@@ -83,7 +83,7 @@ impl<P: Problem> Run<'_, '_, P> {
         let prohibitive = self.prohibitive();
         let mut penalty = self.merit.high;
         loop {
-            self.subproblem.cap(penalty);
+            self.subproblem.cap(penalty, true);
             self.subproblem.solve_again(&self.view)?;
             let relief = violation - self.subproblem.linear_violation;
             if !self.subproblem.yielding || relief >= FAIR * (violation - best) || penalty >= prohibitive {
@@ -131,7 +131,7 @@ impl<P: Problem> Run<'_, '_, P> {
             self.curvature.copy_from_slice(&self.lagrangian_model.b);
             self.subproblem.qp.hessian.copy_from_slice(&self.curvature);
         }
-        self.subproblem.cap(price);
+        self.subproblem.cap(price, true);
         self.subproblem.solve(&self.view, &self.point)
     }
 
@@ -143,9 +143,9 @@ impl<P: Problem> Run<'_, '_, P> {
         self.subproblem.qp.hessian.copy_from_slice(&self.curvature);
         if self.exact && !self.distrust && self.violation_multipliers && self.violation_hessian() {
             let (model, qp) = (&self.violation_model.b, &mut self.subproblem.qp);
-            self.convexifier.convexify(&mut self.curvature, qp, model, false);
+            self.convexifier.convexify(&mut self.curvature, qp, model, true);
         }
-        self.subproblem.cap(1.0);
+        self.subproblem.cap(1.0, false);
         self.subproblem.solve(&self.view, &self.point)?;
         Ok(self.conclude(Kind::Feasibility))
     }
@@ -188,7 +188,7 @@ impl<P: Problem> Run<'_, '_, P> {
         multiply(&self.curvature, &self.d, &mut self.trial_gradient);
         let optimality = self.phase == Phase::Optimality;
         self.promise = Promise {
-            slope: if optimality { dot(&self.gradient, &self.d) } else { 0.0 },
+            slope: if optimality { dot(&self.gradient, &self.d) + self.subproblem.beyond_folds } else { 0.0 },
             curvature: dot(&self.d, &self.trial_gradient).max(0.0),
             relief: self.point.violation - self.subproblem.linear_violation,
         };

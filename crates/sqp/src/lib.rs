@@ -50,6 +50,7 @@ mod convexify;
 mod dense;
 mod direction;
 mod eigen;
+mod folds;
 mod kkt;
 mod merit;
 mod minimize;

@@ -26,7 +26,7 @@ pub(super) struct Merit {
 /// What the subproblem promises for its full step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Promise {
-    /// ∇fᵀd.
+    /// ∇fᵀd, and what folds of f add.
     pub(super) slope: f64,
     /// dᵀHd ≥ 0.
     pub(super) curvature: f64,

@@ -73,6 +73,19 @@ pub trait Problem {
         0.0
     }
 
+    /// How many folds f may have: places where a term of it, `c(x)` at the linearized point, changes its sign and counts on as |c|. What
+    /// f's derivatives say is true on this side of a fold alone. A subproblem that knows of it stops there, or goes on at a price.
+    fn folds(&self) -> usize {
+        0
+    }
+
+    /// Writes ∇c of fold `i` and gives c > 0; `None` where f has no such fold now. Called after `linearize` and before the next
+    /// `evaluate`.
+    fn fold(&self, i: usize, row: &mut [f64]) -> Option<f64> {
+        let _ = (i, row);
+        None
+    }
+
     /// The Hessian of f − λᵀc_E − μᵀc_I at the linearized point, row by row (n·n numbers, of which the lower triangle is
     /// read). Called after `linearize` and before the next `evaluate`. Need not be exact: Gauss-Newton curvature is welcome.
     /// Returning `false`, the default, asks for quasi-Newton approximations from then on.

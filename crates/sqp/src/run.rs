@@ -84,7 +84,7 @@ impl<'a, 'p, P: Problem> Run<'a, 'p, P> {
             options,
             lower,
             upper,
-            subproblem: Subproblem::new(n, equalities, inequalities, options.subproblems),
+            subproblem: Subproblem::new(n, equalities, inequalities, view.folds(), options.subproblems),
             merit: Merit::new(options.penalty),
             phase: Phase::Optimality,
             point: Point::new(n, equalities, inequalities),

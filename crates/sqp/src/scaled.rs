@@ -180,6 +180,19 @@ impl<'p, P: Problem> Scaled<'p, P> {
         if price.is_finite() { Ok(price) } else { Err(Undefined) }
     }
 
+    /// Number of folds of f.
+    pub(super) fn folds(&self) -> usize {
+        self.problem.folds()
+    }
+
+    /// ∇c of a fold, and c, if f has it now.
+    pub(super) fn fold(&self, i: usize, row: &mut [f64]) -> Result<Option<f64>, Undefined> {
+        row.fill(0.0);
+        let Some(value) = self.problem.fold(i, row) else { return Ok(None) };
+        self.finish_row(1.0, row)?;
+        if value.is_finite() { Ok(Some(value)) } else { Err(Undefined) }
+    }
+
     fn finish_row(&self, weight: f64, row: &mut [f64]) -> Result<(), Undefined> {
         for (a, s) in row.iter_mut().zip(&self.scale) {
             *a *= weight * s;

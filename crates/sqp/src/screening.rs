@@ -3,10 +3,11 @@
 //! Of thousands of sampled inequalities a few are active. The subproblem starts with the equalities, last time's active rows
 //! and what is violated or as near to it as last time's step was long. Its solution d is then put to *all* linearized
 //! constraints at once (J_I·d is one call); rows it violates are added and the dual method goes on from where it stands. When
-//! none is left, d solves the full subproblem: screening costs rounds, never exactness.
+//! none is left, d solves the full subproblem: screening costs rounds, never exactness. The objective's folds are screened likewise.
 
 use super::Problem;
 use super::dense::dot;
+use super::folds::Folds;
 use super::options::Subproblems;
 use super::problem::Undefined;
 use super::qp::active_set::ActiveSet;
@@ -36,8 +37,8 @@ pub(super) struct Subproblem {
     pub(super) qp: Quadratic,
     solver: ActiveSet,
     method: Subproblems,
-    /// Inequality of each row of `qp` after the equalities.
-    ids: Vec<usize>,
+    /// What each row of `qp` after the equalities is.
+    ids: Vec<Id>,
     /// Row of `qp` of each inequality, or `NONE`.
     row_of: Vec<usize>,
     /// Where bounds, equalities and inequalities stood in the last solution.
@@ -48,6 +49,7 @@ pub(super) struct Subproblem {
     reach: Vec<f64>,
     equality_constants: Vec<f64>,
     inequality_constants: Vec<f64>,
+    folds: Folds,
     limit: f64,
     row: Vec<f64>,
     scratch: Vec<f64>,
@@ -61,6 +63,8 @@ pub(super) struct Subproblem {
     pub(super) inequality_directions: Vec<f64>,
     /// Σ of the violations of the linearized constraints at d.
     pub(super) linear_violation: f64,
+    /// What the folds that d crosses add to the objective.
+    pub(super) beyond_folds: f64,
     /// Some constraint gave way: its multiplier is at the limit.
     pub(super) yielding: bool,
     /// Number of active constraints and bounds.
@@ -76,13 +80,21 @@ enum Start {
     Resume,
 }
 
+/// What a row of the subproblem is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Id {
+    Inequality(usize),
+    Fold(usize),
+}
+
 impl Subproblem {
-    pub(super) fn new(n: usize, equalities: usize, inequalities: usize, method: Subproblems) -> Self {
+    pub(super) fn new(n: usize, equalities: usize, inequalities: usize, folds: usize, method: Subproblems) -> Self {
+        let rows = equalities + inequalities + folds;
         Self {
-            qp: Quadratic::new(n, equalities + inequalities),
-            solver: ActiveSet::new(n, equalities + inequalities),
+            qp: Quadratic::new(n, rows),
+            solver: ActiveSet::new(n, rows),
             method,
-            ids: Vec::with_capacity(inequalities),
+            ids: Vec::with_capacity(inequalities + folds),
             row_of: vec![NONE; inequalities],
             bound_places: vec![Place::Off; 2 * n],
             equality_places: vec![Place::Working; equalities],
@@ -90,15 +102,17 @@ impl Subproblem {
             reach: vec![0.0; inequalities],
             equality_constants: vec![0.0; equalities],
             inequality_constants: vec![0.0; inequalities],
+            folds: Folds::new(n, folds),
             limit: f64::INFINITY,
             row: vec![0.0; n],
             scratch: vec![0.0; n],
-            step: Step::with_room(n, equalities + inequalities),
+            step: Step::with_room(n, rows),
             lambda: vec![0.0; equalities],
             mu: vec![0.0; inequalities],
             equality_directions: vec![0.0; equalities],
             inequality_directions: vec![0.0; inequalities],
             linear_violation: 0.0,
+            beyond_folds: 0.0,
             yielding: false,
             active: 0,
             interior_solves: 0,
@@ -112,9 +126,7 @@ impl Subproblem {
 
     /// Linearizes at `point`: the rows to start with, and those with a multiplier in `mu`.
     pub(super) fn gather<P: Problem>(&mut self, view: &Scaled<P>, point: &Point, mu: &[f64]) -> Result<(), Undefined> {
-        for &i in &self.ids {
-            self.row_of[i] = NONE;
-        }
+        self.row_of.fill(NONE);
         self.ids.clear();
         self.qp.clear();
         self.equality_constants.copy_from_slice(&point.values.equalities);
@@ -139,13 +151,28 @@ impl Subproblem {
                 self.add(view, i)?;
             }
         }
+        self.folds.linearize(view)?;
+        for k in 0..self.folds.count() {
+            if self.folds.was_met(k) {
+                self.add_fold(k);
+            }
+        }
         Ok(())
+    }
+
+    fn add_fold(&mut self, k: usize) {
+        self.ids.push(Id::Fold(k));
+        self.folds.used[k] = true;
+        self.qp.push(self.folds.row(k), self.folds.value(k), false, self.folds.price());
+        if let Some(hint) = self.qp.hints.last_mut() {
+            *hint = self.folds.places[k];
+        }
     }
 
     fn add<P: Problem>(&mut self, view: &Scaled<P>, i: usize) -> Result<(), Undefined> {
         view.inequality_row(i, &mut self.row)?;
         self.row_of[i] = view.equalities + self.ids.len();
-        self.ids.push(i);
+        self.ids.push(Id::Inequality(i));
         self.qp.push(&self.row, self.inequality_constants[i], false, self.limit);
         if let Some(hint) = self.qp.hints.last_mut() {
             *hint = self.inequality_places[i];
@@ -158,26 +185,32 @@ impl Subproblem {
         for (i, lambda) in lambda.iter().enumerate() {
             super::dense::axpy(-lambda * self.qp.norms[i], self.qp.row(i), out);
         }
-        for (k, &i) in self.ids.iter().enumerate() {
-            if mu[i] != 0.0 {
-                let row = lambda.len() + k;
-                super::dense::axpy(-mu[i] * self.qp.norms[row], self.qp.row(row), out);
-            }
+        for (row, i) in self.inequality_rows().filter(|(_, i)| mu[*i] != 0.0) {
+            super::dense::axpy(-mu[i] * self.qp.norms[row], self.qp.row(row), out);
         }
     }
 
     /// The largest ‖λᵢ·aᵢ‖₂ of all constraints.
     pub(super) fn largest_force(&self, lambda: &[f64], mu: &[f64]) -> f64 {
         let equalities = lambda.iter().zip(&self.qp.norms).map(|(m, norm)| m.abs() * norm);
-        let rows = self.ids.iter().zip(self.qp.norms.iter().skip(lambda.len())).map(|(&i, norm)| mu[i] * norm);
+        let rows = self.inequality_rows().map(|(row, i)| mu[i] * self.qp.norms[row]);
         equalities.chain(rows).fold(0.0, f64::max)
     }
 
-    /// Caps all multipliers of the constraints as they are: the price of violating them.
-    pub(super) fn cap(&mut self, limit: f64) {
+    /// Rows of `qp` that are inequalities, and which.
+    fn inequality_rows(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let rows = self.ids.iter().enumerate().map(|(k, id)| (self.lambda.len() + k, *id));
+        rows.filter_map(|(row, id)| if let Id::Inequality(i) = id { Some((row, i)) } else { None })
+    }
+
+    /// Caps all multipliers of the constraints as they are: the price of violating them. Without the objective its folds have none.
+    pub(super) fn cap(&mut self, limit: f64, objective: bool) {
         self.limit = limit;
-        for (own, norm) in self.qp.limits.iter_mut().zip(&self.qp.norms) {
-            *own = limit * norm;
+        self.folds.counted = objective;
+        let price = self.folds.price();
+        let ids = (0..self.lambda.len()).map(|_| None).chain(self.ids.iter().map(Some));
+        for ((own, norm), id) in self.qp.limits.iter_mut().zip(&self.qp.norms).zip(ids) {
+            *own = norm * if matches!(id, Some(Id::Fold(_))) { price } else { limit };
         }
     }
 
@@ -213,7 +246,10 @@ impl Subproblem {
             let constant = if row < equalities {
                 self.equality_constants[row]
             } else {
-                self.inequality_constants[self.ids[row - equalities]]
+                match self.ids[row - equalities] {
+                    Id::Inequality(i) => self.inequality_constants[i],
+                    Id::Fold(k) => self.folds.value(k),
+                }
             };
             self.qp.constants[row] = constant / self.qp.norms[row];
         }
@@ -304,6 +340,11 @@ impl Subproblem {
                 self.add(view, i)?;
             }
         }
+        for k in 0..self.folds.count() {
+            if !self.folds.used[k] && self.folds.beyond(k, &self.step.d) > 0.0 {
+                self.add_fold(k);
+            }
+        }
         Ok(self.ids.len() > before)
     }
 
@@ -314,18 +355,27 @@ impl Subproblem {
         self.bound_places.copy_from_slice(&self.qp.hints[..2 * n]);
         let places = &self.qp.hints[2 * n..];
         self.active = self.qp.hints.iter().filter(|place| **place != Place::Off).count();
-        self.yielding = places.iter().any(|place| matches!(place, Place::Full | Place::Empty));
+        self.yielding = false;
         self.linear_violation = 0.0;
         for i in 0..equalities {
             self.lambda[i] = self.qp.multiplier(&self.step, i);
             self.equality_places[i] = places[i];
+            self.yielding |= matches!(places[i], Place::Full | Place::Empty);
             self.equality_directions[i] = self.qp.norms[i] * dot(self.qp.row(i), &self.step.d);
             self.linear_violation += (self.equality_constants[i] + self.equality_directions[i]).abs();
         }
-        for (k, &i) in self.ids.iter().enumerate() {
-            self.mu[i] = self.qp.multiplier(&self.step, equalities + k);
-            self.inequality_places[i] = places[equalities + k];
+        self.folds.places.fill(Place::Off);
+        for (row, id) in (equalities..).zip(&self.ids) {
+            match *id {
+                Id::Inequality(i) => {
+                    self.mu[i] = self.qp.multiplier(&self.step, row);
+                    self.inequality_places[i] = places[row];
+                    self.yielding |= places[row] == Place::Full;
+                }
+                Id::Fold(k) => self.folds.places[k] = places[row],
+            }
         }
+        self.beyond_folds = (0..self.folds.count()).map(|k| self.folds.beyond(k, &self.step.d)).sum();
         for i in 0..self.reach.len() {
             let direction = self.inequality_directions[i];
             self.reach[i] = direction.abs();

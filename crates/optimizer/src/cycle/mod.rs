@@ -13,6 +13,7 @@
 mod by_theta;
 mod crossing;
 mod dip;
+mod fold;
 mod halt;
 mod hessian;
 mod phase;

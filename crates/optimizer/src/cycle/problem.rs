@@ -490,6 +490,14 @@ impl Problem for Cycle<'_> {
         p.mesh.weights[node] * p.duration() * torques.sum::<f64>() * self.per_work()
     }
 
+    fn folds(&self) -> usize {
+        self.count_folds()
+    }
+
+    fn fold(&self, i: usize, row: &mut [f64]) -> Option<f64> {
+        self.write_fold(i, row)
+    }
+
     fn hessian(&mut self, equality_multipliers: &[f64], inequality_multipliers: &[f64], hessian: &mut [f64]) -> bool {
         self.lagrangian_hessian(equality_multipliers, inequality_multipliers, hessian);
         true

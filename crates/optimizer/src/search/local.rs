@@ -108,7 +108,7 @@ fn rough(options: &Options) -> Options {
 
 /// Options of the solver where kinks are rounded off more sharply than at first.
 fn rounded(options: &Options) -> Options {
-    Options { tolerance: 5e-4, feasibility: 1e-5, iteration_limit: 150, first_step_limit: CAUTION, ..options.clone() }
+    Options { tolerance: 5e-4, feasibility: 1e-5, iteration_limit: 150, ..options.clone() }
 }
 
 /// Called at every iteration; can stop the search.
@@ -144,7 +144,7 @@ impl Task<'_> {
 
     /// Minimizes directly from the optimum of a neighbouring problem, and from nowhere else if that leads nowhere.
     pub fn carry(&self, start: &[f64], observe: Observer) -> Local {
-        self.polish(start, f64::INFINITY, observe)
+        self.polish(start, observe)
     }
 
     /// The motion nearest to `start` that keeps to all limits, whatever it costs.
@@ -166,18 +166,16 @@ impl Task<'_> {
 
     /// An approximate optimum of `cycle`, then the optimum.
     fn approach(&self, mut cycle: Cycle, start: &[f64], options: &Options, observe: Observer) -> Local {
-        let mut first_step_limit = f64::INFINITY;
         if self.criterion == Criterion::Energy {
             cycle.smoothing = SMOOTHING;
-            first_step_limit = CAUTION;
         }
         let solution = sqp::minimize(&mut cycle, start, &rough(options), observe);
-        let local = self.polish(&solution.x, first_step_limit, observe);
+        let local = self.polish(&solution.x, observe);
         Local { iterations: solution.iterations + local.iterations, ..local }
     }
 
     /// The optimum near `start`. Where smooth steps lead to none, joints may have to be held still.
-    fn polish(&self, start: &[f64], first_step_limit: f64, observe: Observer) -> Local {
+    fn polish(&self, start: &[f64], observe: Observer) -> Local {
         // What already holds joints still is an optimum of a neighbouring problem, or near one.
         let mut held = self.slow(start, AT_REST);
         let mut iterations = 0;
@@ -188,7 +186,7 @@ impl Task<'_> {
             }
             iterations += local.iterations;
         }
-        let mut free = self.free(start, first_step_limit, observe);
+        let mut free = self.free(start, observe);
         iterations += free.iterations;
         let theta = free.theta.clone();
         for share in SLOW {
@@ -215,12 +213,11 @@ impl Task<'_> {
     }
 
     /// The optimum near `start` with no joint held, however many kinks are on the way.
-    fn free(&self, start: &[f64], first_step_limit: f64, observe: Observer) -> Local {
+    fn free(&self, start: &[f64], observe: Observer) -> Local {
         if self.criterion != Criterion::Energy {
-            return self.solve(start, &Way { first_step_limit, ..Way::FREE }, observe).local;
+            return self.solve(start, &Way::FREE, observe).local;
         }
-        let local =
-            self.solve(start, &Way { first_step_limit, iteration_limit: AMONG_KINKS, ..Way::FREE }, observe).local;
+        let local = self.solve(start, &Way { iteration_limit: AMONG_KINKS, ..Way::FREE }, observe).local;
         if local.status != Status::IterationLimit {
             return local;
         }
