@@ -115,6 +115,7 @@ impl<P: Problem> Run<'_, '_, P> {
     /// Solves the subproblem of the optimality phase at the given price of a violation. `augment`: see [`super::convexify`].
     fn plain_step(&mut self, augment: bool, price: f64) -> Result<(), Trouble> {
         self.set_bounds();
+        self.augmented = augment;
         self.subproblem.qp.gradient.copy_from_slice(&self.gradient);
         let newton = self.exact && !self.distrust && self.phase == Phase::Optimality;
         if newton && !self.hessian_known {
@@ -138,6 +139,7 @@ impl<P: Problem> Run<'_, '_, P> {
     /// The step that reduces the violation alone: a proximal ℓ1 model of it.
     fn towards_feasibility(&mut self) -> Result<Direction, Trouble> {
         self.set_bounds();
+        self.augmented = true;
         self.subproblem.qp.gradient.fill(0.0);
         self.curvature.copy_from_slice(&self.violation_model.b);
         self.subproblem.qp.hessian.copy_from_slice(&self.curvature);
@@ -171,6 +173,14 @@ impl<P: Problem> Run<'_, '_, P> {
         self.hessian_known
     }
 
+    /// Whether a step promises more of the objective for a relief of next to nothing: the convexification counted on constraints that
+    /// turned out inactive.
+    fn misled(&self) -> bool {
+        self.augmented
+            && self.kkt.violation <= self.options.feasibility
+            && self.promise.slope + 0.5 * self.promise.curvature > 0.0
+    }
+
     fn set_bounds(&mut self) {
         let limit = self.options.step_limit.min(self.radius);
         let qp = &mut self.subproblem.qp;
@@ -197,6 +207,9 @@ impl<P: Problem> Run<'_, '_, P> {
         if optimality {
             if self.optimal() {
                 return Direction::Stationary;
+            }
+            if self.misled() {
+                return Direction::None;
             }
             if kind == Kind::Exact {
                 self.merit.relax(max_abs(&self.lambda).max(max_abs(&self.mu)));

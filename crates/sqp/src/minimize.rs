@@ -14,7 +14,7 @@ use super::{Control, Iteration, KktResidual, Options, Problem, Solution, Status,
 /// Consecutive steps that change nothing before the solver admits it.
 const STALLS: usize = 4;
 /// Iterations in which the violation alone must fall by a hundredth.
-const PATIENCE: usize = 15;
+const PATIENCE: usize = 40;
 
 /// Minimizes the problem from `x0` (moved into the bounds first). The observer sees every iterate and may stop the run.
 ///

@@ -8,7 +8,7 @@
 //! either side the power is a quartic again. Where they meet it is the same on both, so that their motion does not matter either.
 
 use super::sides::Sides;
-use super::{Bend, Integral, Kink};
+use super::{Bend, Integral, Kink, Signs};
 use crate::flow::Mesh;
 use crate::instant::Instants;
 use crate::lgl::NODES;
@@ -24,6 +24,9 @@ pub fn integrate(mesh: &Mesh, instants: &Instants, integral: &mut Integral) {
             for side in &sides.parts {
                 let power: [f64; NODES] = from_fn(|i| integral.drives[k].power(instants.row(node(i)), side.sign));
                 let (weights, roots) = absolute_weights(mesh, &power, side.within);
+                if sides.turns.is_empty() {
+                    integral.signs.push(Signs { drive: k, element: e, side: side.sign, weights });
+                }
                 for (i, (p, w)) in power.iter().zip(&weights).enumerate() {
                     let (drive, y, first) = (&integral.drives[k], instants.row(node(i)), share * w);
                     integral.value += first * p;
@@ -98,6 +101,23 @@ pub fn integrate_smooth(epsilon: f64, mesh: &Mesh, instants: &Instants, integral
                 integral.seconds.push((node, drive.rate(), drive.rate(), first * bend));
             }
             integral.add(node, &drive.power_partials(y, side), first, second);
+        }
+    }
+    keeping_signs(epsilon, mesh, instants, integral);
+}
+
+/// Of powers rounded off by ε, those that keep their sign in an element, and are everywhere beyond ε.
+fn keeping_signs(epsilon: f64, mesh: &Mesh, instants: &Instants, integral: &mut Integral) {
+    for (k, drive) in integral.drives.iter().enumerate() {
+        for e in 0..mesh.elements {
+            let y = |i: usize| instants.row(e * (NODES - 1) + i);
+            let side = if drive.coulomb() == 0.0 { 0.0 } else { y(0)[drive.rate()].signum() };
+            let sign = drive.power(y(0), side).signum();
+            let keeps = |i: usize| side * y(i)[drive.rate()] >= 0.0 && sign * drive.power(y(i), side) > epsilon;
+            if (0..NODES).all(keeps) {
+                let weights = mesh.lobatto.weights.map(|w| sign * w);
+                integral.signs.push(Signs { drive: k, element: e, side, weights });
+            }
         }
     }
 }

@@ -26,6 +26,8 @@ pub struct Integral {
     pub kinks: Vec<Kink>,
     /// Jumps of the torque.
     pub turns: Vec<Turn>,
+    /// By drive and element, where powers have which sign.
+    pub signs: Vec<Signs>,
     /// ∂value/∂(dry friction) of each drive.
     pub by_coulomb: Vec<f64>,
     /// What is summed over.
@@ -48,6 +50,7 @@ impl Integral {
             seconds: Vec::with_capacity(most.1 * nodes),
             kinks: Vec::with_capacity(drives.len() * nodes),
             turns: Vec::with_capacity(drives.len() * nodes),
+            signs: Vec::with_capacity(drives.len() * mesh.elements),
             by_coulomb: vec![0.0; drives.len()],
             drives,
             held: Vec::new(),
@@ -89,6 +92,17 @@ pub struct Going {
     pub element: usize,
     /// Of its rate.
     pub sign: f64,
+}
+
+/// A power in an element in which dry friction keeps its sign.
+#[derive(Clone, Copy, Debug)]
+pub struct Signs {
+    pub drive: usize,
+    pub element: usize,
+    /// The sign of dry friction; 0 without any.
+    pub side: f64,
+    /// ω with ∫ |power| = Σ ω power(node), per unit of the element.
+    pub weights: [f64; NODES],
 }
 
 /// What vanishes at a kink.
@@ -134,6 +148,7 @@ pub fn integrate(criterion: Criterion, smoothing: f64, mesh: &Mesh, instants: &I
     integral.seconds.clear();
     integral.kinks.clear();
     integral.turns.clear();
+    integral.signs.clear();
     integral.by_coulomb.clear();
     integral.by_coulomb.resize(integral.drives.len(), 0.0);
     match criterion {

@@ -1,42 +1,55 @@
 //! Where |power| will bend next: the [folds](piaffe_sqp::Problem::folds) of the criterion.
 //!
-//! While a joint's power keeps its sign in an element, the criterion counts ± its integral there, and is as smooth as that. A step that
-//! turns the sign around meets a bend that no derivative tells of. So the integrals themselves are handed to the solver, each as a
-//! term that counts on as its magnitude. It is less than what the criterion will be only while the power's root is on its way through the
-//! element.
+//! In an element a joint does work, and takes some: ∫ |power| is P⁺ + P⁻, and neither is ever negative. Linearized they may become so:
+//! while a power keeps its sign in an element, and the criterion is smooth, no derivative tells that P⁺ has an end; where a root is on its way
+//! through an element, none tells how far. So both are handed to the solver, each as a term that counts on as its magnitude beyond zero.
+//! What that makes of the criterion is the greatest of three of its tangents: the present one, and those of all work done and of all taken.
 
 use super::Cycle;
 use super::phase::Phase;
+use crate::cost::Signs;
 use crate::lgl::NODES;
 use piaffe_model::motion::Criterion;
 use piaffe_sqp::axpy;
 use smallvec::SmallVec;
 
+impl Phase {
+    /// P⁺ and P⁻ of each joint and element.
+    fn folds(&self) -> usize {
+        2 * self.cost.drives.len() * self.mesh.elements
+    }
+}
+
 impl Cycle<'_> {
-    /// As many as there are joints and elements, if the criterion has any.
+    /// As many as the criterion may have.
     pub(super) fn count_folds(&self) -> usize {
         match self.criterion {
-            Criterion::Energy => self.phases.iter().map(|p| p.cost.drives.len() * p.mesh.elements).sum(),
+            Criterion::Energy => self.phases.iter().map(Phase::folds).sum(),
             Criterion::Torque => 0,
         }
     }
 
-    /// What the power of a joint in an element adds to the objective, and its gradient in Θ; `None` if it changes its sign there.
+    /// What the work that a joint does, or takes, in an element adds to the objective, and its gradient in Θ; `None` if it does or takes
+    /// none.
     pub(super) fn write_fold(&self, mut i: usize, row: &mut [f64]) -> Option<f64> {
         let phase = self.phases.iter().find(|p| {
-            let count = p.cost.drives.len() * p.mesh.elements;
-            i.checked_sub(count).map(|rest| i = rest).is_none()
+            let rest = i.checked_sub(p.folds());
+            i = rest.unwrap_or(i);
+            rest.is_none()
         })?;
-        let (drive, element) = (i / phase.mesh.elements, i % phase.mesh.elements);
-        let OneSided { integral, side } = phase.one_sided(drive, element, self.smoothing * self.units.power())?;
-        let scale = phase.duration() * self.per_work() / phase.mesh.elements as f64 * integral.signum();
-        let value = scale * integral;
+        let (drive, element) = (i / 2 / phase.mesh.elements, i / 2 % phase.mesh.elements);
+        let signs = phase.cost.signs.iter().find(|signs| (signs.drive, signs.element) == (drive, element))?;
+        let weights = part(signs, &phase.mesh.lobatto.weights, if i % 2 == 0 { 1.0 } else { -1.0 })?;
+        let drive = &phase.cost.drives[drive];
+        let scale = phase.duration() * self.per_work() / phase.mesh.elements as f64;
+        let nodes = || (element * (NODES - 1)..).zip(weights);
+        let power = |node: usize| drive.power(phase.linearized(node), signs.side);
+        let value = nodes().map(|(node, weight)| scale * weight * power(node)).sum::<f64>();
         let mut local = phase.no_parameters();
         local[phase.layout.duration()] = value / phase.duration();
-        for (i, weight) in phase.mesh.lobatto.weights.iter().enumerate() {
-            let node = element * (NODES - 1) + i;
+        for (node, weight) in nodes() {
             let mut state = SmallVec::<[f64; 32]>::from_elem(0.0, phase.instants.width());
-            for (quantity, partial) in phase.cost.drives[drive].power_partials(phase.linearized(node), side) {
+            for (quantity, partial) in drive.power_partials(phase.linearized(node), signs.side) {
                 axpy(scale * weight * partial, phase.instants.gradient(node, quantity), &mut state);
             }
             phase.pull(self.description(), node, &state, &mut local);
@@ -47,28 +60,8 @@ impl Cycle<'_> {
     }
 }
 
-/// A power that keeps its sign in an element.
-struct OneSided {
-    /// Over the element, per unit of it, W.
-    integral: f64,
-    /// The sign of the rate, and so of dry friction, where there is any.
-    side: f64,
-}
-
-impl Phase {
-    /// What the power of a joint is in an element, if it keeps its sign there and is everywhere beyond what kinks are rounded off by (W).
-    fn one_sided(&self, drive: usize, element: usize, smoothing: f64) -> Option<OneSided> {
-        let joint = &self.cost.drives[drive];
-        let first = element * (NODES - 1);
-        if self.cost.kinks.iter().any(|kink| (kink.drive, kink.first) == (drive, first)) {
-            return None;
-        }
-        let rates: [f64; NODES] = std::array::from_fn(|i| self.linearized(first + i)[joint.rate()]);
-        let side = if joint.coulomb() == 0.0 { 0.0 } else { rates[0].signum() };
-        let power: [f64; NODES] = std::array::from_fn(|i| joint.power(self.linearized(first + i), side));
-        let sign = power[0].signum();
-        let keeps = rates.iter().all(|rate| side * rate >= 0.0) && power.iter().all(|p| sign * p > smoothing);
-        let integral = || power.iter().zip(&self.mesh.lobatto.weights).map(|(p, w)| p * w).sum();
-        keeps.then(|| OneSided { integral: integral(), side })
-    }
+/// Weights of the powers at the nodes of an element in the integral of one sign's part; `None` if there is no such part.
+fn part(signs: &Signs, whole: &[f64; NODES], sign: f64) -> Option<[f64; NODES]> {
+    let weights: [f64; NODES] = std::array::from_fn(|i| 0.5 * (signs.weights[i] + sign * whole[i]));
+    weights.iter().any(|weight| *weight != 0.0).then_some(weights)
 }

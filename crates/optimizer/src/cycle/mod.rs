@@ -85,9 +85,6 @@ pub struct Cycle<'a> {
     duration: f64,
 
     // Derivatives of the last linearization, in Θ.
-    linearized: Vec<f64>,
-    /// How far it lies from the one before: the reach of the model that is built from it.
-    moved: Vec<f64>,
     cost_gradient: Vec<f64>,
     duration_gradient: Vec<f64>,
     travel_gradient: Vec<f64>,
@@ -195,8 +192,6 @@ impl<'a> Cycle<'a> {
             speed,
             smoothing: 0.0,
             units: Units::new(d),
-            linearized: Vec::with_capacity(n),
-            moved: vec![0.0; n],
             cost_gradient: vec![0.0; n],
             duration_gradient: vec![0.0; n],
             travel_gradient: vec![0.0; n],

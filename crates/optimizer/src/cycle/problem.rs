@@ -382,14 +382,7 @@ impl Problem for Cycle<'_> {
         Ok(())
     }
 
-    fn linearize(&mut self, x: &[f64]) -> Result<(), Undefined> {
-        if self.linearized.is_empty() {
-            self.linearized.extend_from_slice(x);
-        }
-        for ((moved, old), new) in self.moved.iter_mut().zip(&mut self.linearized).zip(x) {
-            *moved = new - *old;
-            *old = *new;
-        }
+    fn linearize(&mut self, _: &[f64]) -> Result<(), Undefined> {
         self.differentiate_parameters();
         for phase in &mut self.phases {
             phase.differentiate(self.gait);

@@ -7,11 +7,8 @@ use crate::constraints::PathConstraint;
 use crate::cycle::Cycle;
 use crate::cycle::phase::Phase;
 use crate::lgl::NODES;
-use piaffe_sqp::{axpy, dot};
+use piaffe_sqp::axpy;
 use smallvec::SmallVec;
-
-/// Share of an element per change of power over slope, beyond which a kink's curvature is averaged.
-const REACH: f64 = 0.3;
 
 impl Cycle<'_> {
     /// Second-order terms of all instants of phase `k`, in the local parameters.
@@ -51,8 +48,7 @@ impl Cycle<'_> {
     /// Roots of a power, where its magnitude has kinks: they move.
     fn kinks_of_power(&self, p: &Phase, work: &mut PhaseWork) {
         let (d, width, scale) = (self.description(), p.instants.width(), self.scale_of_cost(p));
-        let PhaseWork { local, reach, h, .. } = work;
-        reach.iter_mut().zip(p.by_theta.push(&self.moved)).for_each(|(slot, moved)| *slot = moved);
+        let PhaseWork { local, h, .. } = work;
         for kink in &p.cost.kinks {
             local.fill(0.0);
             for (i, shape) in kink.shape.iter().enumerate().take(NODES) {
@@ -63,12 +59,7 @@ impl Cycle<'_> {
                 }
                 p.pull(d, node, &state, local);
             }
-            // A root that the next step moves out of sight bends the cost less than its slope says:
-            // the last step tells how far the power at the root may change.
-            let change = dot(local, reach);
-            let moved = REACH * change / kink.slope;
-            let weight = kink.weight / (1.0 + moved * moved).sqrt();
-            square(h, local, weight * scale);
+            square(h, local, kink.weight * scale);
         }
     }
 

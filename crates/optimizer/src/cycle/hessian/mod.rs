@@ -74,8 +74,6 @@ struct PhaseWork {
     of_takeoff: Vec<f64>,
     scratch: Vec<f64>,
     local: Vec<f64>,
-    /// The last step, in local parameters.
-    reach: Vec<f64>,
     /// W, later the Hessian, in the local parameters.
     h: Vec<f64>,
 }
@@ -107,7 +105,6 @@ impl PhaseWork {
             of_takeoff: if leaves { d.shapes.takeoff_curvature.weights.zeros() } else { Vec::new() },
             scratch: z(np),
             local: z(np),
-            reach: z(np),
             h: z(np * np),
         }
     }
