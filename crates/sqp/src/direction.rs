@@ -17,6 +17,9 @@ const FAIR: f64 = 0.3;
 /// If the best relief is a smaller share of the violation than this, the objective has to wait.
 const HOPELESS: f64 = 0.1;
 
+/// Changes of the objective that are rounding, relative to one and to its size.
+const ROUNDING: f64 = 1e-12;
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Direction {
     /// `Run::d`, with its promise.
@@ -173,12 +176,14 @@ impl<P: Problem> Run<'_, '_, P> {
         self.hessian_known
     }
 
-    /// Whether a step promises more of the objective for a relief of next to nothing: the convexification counted on constraints that
-    /// turned out inactive.
+    /// Whether a step raises the objective by more than the violation is worth at its own multipliers: the convexification counted on
+    /// constraints that turned out inactive.
     fn misled(&self) -> bool {
-        self.augmented
-            && self.kkt.violation <= self.options.feasibility
-            && self.promise.slope + 0.5 * self.promise.curvature > 0.0
+        let values = &self.point.values;
+        let equalities = self.lambda.iter().zip(&values.equalities).map(|(m, c)| (m * c).abs());
+        let inequalities = self.mu.iter().zip(&values.inequalities).map(|(m, c)| m * (-c).max(0.0));
+        let worth = equalities.chain(inequalities).sum::<f64>() + ROUNDING * values.objective.abs().max(1.0);
+        self.augmented && self.promise.slope + 0.5 * self.promise.curvature > 2.0 * worth
     }
 
     fn set_bounds(&mut self) {
