@@ -5,7 +5,6 @@
 
 use super::lift::Lift;
 use super::limits::Affine;
-use nalgebra::DVector;
 use piaffe_model::motion::Costs;
 use serde::{Deserialize, Serialize};
 
@@ -45,7 +44,7 @@ pub struct Motor {
 
 impl Effort {
     /// For one choice of shares, or two: one for the powers and one for the torques.
-    pub fn new(motors: &[Motor], for_energy: &DVector<f64>, for_torque: &DVector<f64>) -> Effort {
+    pub fn new(motors: &[Motor], for_energy: &[f64], for_torque: &[f64]) -> Effort {
         let square = |motor: &Motor| motor.sharing * motor.torque.value(for_torque).powi(2);
         Effort {
             powers: motors.iter().map(|motor| motor.torque.value(for_energy) * motor.rate).collect(),
@@ -181,15 +180,10 @@ mod tests {
         let mut any = || 2.0 * rng.f64() - 1.0;
         for _ in 0..100 {
             let motors: Vec<Motor> = (0..6)
-                .map(|_| Motor {
-                    torque: Affine { at: any(), slope: DVector::from_element(1, any()) },
-                    rate: any(),
-                    sharing: 2.0,
-                })
+                .map(|_| Motor { torque: Affine { at: any(), slope: [any()][..].into() }, rate: any(), sharing: 2.0 })
                 .collect();
             let at = |s: f64| {
-                let s = DVector::from_element(1, s);
-                let effort = Effort::new(&motors, &s, &s);
+                let effort = Effort::new(&motors, &[s], &[s]);
                 (effort.powers.iter().map(|power| power.abs()).sum::<f64>(), effort.torque)
             };
             let (energy, torque) = (at(least_energy(&motors)).0, at(least_torque(&motors)).1);

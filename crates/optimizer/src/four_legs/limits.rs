@@ -4,8 +4,8 @@
 
 use super::cost::Motor;
 use super::posture::{Legs, Posture};
-use super::shares::Shares;
-use nalgebra::DVector;
+use super::rows::dot;
+use super::shares::{Shares, Squeeze};
 
 /// A limit of §6.1 for one real leg or joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,15 +25,15 @@ pub enum Limit {
 pub struct Room {
     pub limit: Limit,
     pub height: Affine,
-    /// None but for friction.
-    pub tangential: Vec<Affine>,
+    /// Of friction alone.
+    pub tangential: Option<[Affine; 3]>,
 }
 
 /// `at + slope · s`.
 #[derive(Clone, Debug)]
 pub struct Affine {
     pub at: f64,
-    pub slope: DVector<f64>,
+    pub slope: Squeeze,
 }
 
 /// The limits of a gait's robot.
@@ -42,24 +42,29 @@ pub struct Limits<'a> {
 }
 
 impl Affine {
-    /// `weights · F` for reactions F that are shared by s.
-    fn of(weights: &DVector<f64>, shares: &Shares) -> Affine {
-        Affine { at: weights.dot(&shares.nearest), slope: shares.squeezes.transpose() * weights }
+    /// `weights · F` for the part F, from `first` on, of reactions that are shared by s.
+    pub fn of(weights: &[f64], first: usize, shares: &Shares) -> Affine {
+        let part = |reactions: &[f64]| dot(weights, &reactions[first..][..weights.len()]);
+        let mut slope = Squeeze::from_elem(0.0, shares.squeezes.len());
+        slope.iter_mut().zip(shares.squeezes.iter()).for_each(|(slope, squeeze)| *slope = part(squeeze));
+        Affine { at: part(&shares.nearest), slope }
     }
 
     /// `constant + factor · this`.
-    fn mapped(&self, constant: f64, factor: f64) -> Affine {
-        Affine { at: constant + factor * self.at, slope: &self.slope * factor }
+    pub fn mapped(&self, constant: f64, factor: f64) -> Affine {
+        let mut slope = Squeeze::from_slice(&self.slope);
+        slope.iter_mut().for_each(|slope| *slope *= factor);
+        Affine { at: constant + factor * self.at, slope }
     }
 
-    pub fn value(&self, s: &DVector<f64>) -> f64 {
-        self.at + self.slope.dot(s)
+    pub fn value(&self, s: &[f64]) -> f64 {
+        self.at + dot(&self.slope, s)
     }
 }
 
 impl Room {
-    pub fn margin(&self, s: &DVector<f64>) -> f64 {
-        let square: f64 = self.tangential.iter().map(|t| t.value(s).powi(2)).sum();
+    pub fn margin(&self, s: &[f64]) -> f64 {
+        let square: f64 = self.tangential.iter().flatten().map(|t| t.value(s).powi(2)).sum();
         self.height.value(s) - square.sqrt()
     }
 }
@@ -72,11 +77,10 @@ impl Limits<'_> {
         let weight = self.legs.weight() / stance.len() as f64;
         let least = d.limits.min_vertical_force / self.legs.weight();
         let mut rooms = self.feet(stance, posture, shares, weight, least);
-        let joints: Vec<usize> = match stance {
-            [] => (0..w.joints.len()).collect(),
-            _ => stance.iter().flat_map(|leg| w.legs[*leg].joints.clone()).collect(),
-        };
-        for joint in joints {
+        rooms.reserve(4 * motors.len());
+        let standing = stance.iter().flat_map(|leg| w.legs[*leg].joints.clone());
+        let all = if stance.is_empty() { 0..w.joints.len() } else { 0..0 };
+        for joint in standing.chain(all) {
             let (limits, Motor { torque, rate, sharing }) = (&d.joints[self.legs.joints[joint]], &motors[joint]);
             let most = limits.max_torque / sharing;
             let slowed = (limits.unloaded_speed - limits.loaded_speed) / limits.unloaded_speed;
@@ -99,21 +103,17 @@ impl Limits<'_> {
     /// Vertical part above `least` and friction of every foot, in `unit`.
     fn feet(&self, feet: &[usize], posture: &Posture, shares: &Shares, unit: f64, least: f64) -> Vec<Room> {
         let up = posture.up();
-        let mut rooms = Vec::new();
+        let mut rooms = Vec::with_capacity(2 * feet.len());
         for (k, leg) in feet.iter().enumerate() {
-            let along = |direction: [f64; 3]| {
-                let mut weights = DVector::zeros(shares.nearest.len());
-                (0..3).for_each(|i| weights[3 * k + i] = direction[i] / unit);
-                Affine::of(&weights, shares)
-            };
+            let along = |direction: [f64; 3]| Affine::of(&direction.map(|x| x / unit), 3 * k, shares);
             let vertical = along(up);
             rooms.push(Room::straight(Limit::Vertical(*leg), vertical.mapped(-least, 1.0)));
             // The part of each axis of the platform that is tangential to the ground.
-            let tangential = (0..3).map(|i| along([0, 1, 2].map(|j| f64::from(i == j) - up[i] * up[j])));
+            let tangential = [0, 1, 2].map(|i| along([0, 1, 2].map(|j| f64::from(i == j) - up[i] * up[j])));
             rooms.push(Room {
                 limit: Limit::Friction(*leg),
                 height: vertical.mapped(0.0, self.legs.description.limits.friction),
-                tangential: tangential.collect(),
+                tangential: Some(tangential),
             });
         }
         rooms
@@ -133,6 +133,6 @@ impl Limits<'_> {
 
 impl Room {
     fn straight(limit: Limit, height: Affine) -> Room {
-        Room { limit, height, tangential: Vec::new() }
+        Room { limit, height, tangential: None }
     }
 }
