@@ -7,7 +7,7 @@ use smallvec::SmallVec;
 pub struct Rows {
     width: usize,
     rows: usize,
-    numbers: SmallVec<[f64; 64]>,
+    numbers: SmallVec<[f64; 96]>,
 }
 
 impl Rows {

@@ -21,11 +21,6 @@ pub struct Equation<'a> {
 }
 
 impl Equation<'_> {
-    /// What it feels of reactions.
-    fn felt(&self, reactions: &[f64]) -> f64 {
-        dot(self.columns, reactions) / self.unit
-    }
-
     /// What it lacks with them.
     fn lacking(&self, reactions: &[f64]) -> f64 {
         (self.demand - dot(self.columns, reactions)) / self.unit
@@ -50,56 +45,26 @@ pub struct Shares {
 impl Shares {
     /// From equal shares of the reactions on all of the feet, and the equations that they must meet, by rank, the highest first.
     pub fn new(ranks: &[Vec<Equation>], equal: &[f64]) -> Shares {
-        let size = equal.len();
-        let mut shares = Shares { nearest: equal.into(), squeezes: Rows::zeros(size, size) };
-        (0..size).for_each(|k| shares.squeezes.row_mut(k)[k] = 1.0);
+        let (size, count) = (equal.len(), ranks.iter().map(Vec::len).sum::<usize>());
+        // Orthonormal directions, each with what the equations feel of it: first of one reaction alone.
+        let mut directions = Rows::zeros(size, size + count);
+        for k in 0..size {
+            let (direction, felt) = directions.row_mut(k).split_at_mut(size);
+            direction[k] = 1.0;
+            let equations = ranks.iter().flatten();
+            felt.iter_mut().zip(equations).for_each(|(felt, equation)| *felt = equation.columns[k] / equation.unit);
+        }
         let stiffness = |rank: &Vec<Equation>| rank.iter().map(Equation::stiffness).sum();
         let stiffest = ranks.iter().map(stiffness).fold(0.0, f64::max);
-        ranks.iter().for_each(|rank| shares.meet(rank, FREE * stiffest));
-        shares
-    }
-
-    /// Meets further equations as nearly as what is free allows, by a complete orthogonal decomposition. Directions that no equation
-    /// feels more than `free` stay so.
-    fn meet(&mut self, rank: &[Equation], free: f64) {
-        let size = self.nearest.len();
-        // Free directions, each with what the equations feel of it.
-        let mut directions = Rows::zeros(self.squeezes.len(), size + rank.len());
-        for (k, squeeze) in self.squeezes.iter().enumerate() {
-            let (direction, felt) = directions.row_mut(k).split_at_mut(size);
-            direction.copy_from_slice(squeeze);
-            felt.iter_mut().zip(rank).for_each(|(felt, equation)| *felt = equation.felt(squeeze));
+        let mut nearest = Reactions::from_slice(equal);
+        let (mut stiff, mut column) = (0, size);
+        for rank in ranks {
+            stiff = meet(rank, column, &mut directions, stiff, FREE * stiffest, &mut nearest);
+            column += rank.len();
         }
-        // Reflected so that, of those that are left, the equation that feels most feels one direction alone: that is stiff.
-        let mut stiff = 0;
-        while stiff < directions.len() {
-            let mut felt: SmallVec<[f64; 16]> = SmallVec::from_elem(0.0, rank.len());
-            for k in stiff..directions.len() {
-                felt.iter_mut().zip(&directions.row(k)[size..]).for_each(|(sum, x)| *sum += x * x);
-            }
-            let most = felt.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
-            let Some((equation, _)) = most.filter(|(_, felt)| **felt > free) else { break };
-            directions.reflect(stiff, size + equation);
-            stiff += 1;
-        }
-        // What the equations feel of stiff directions, and what they lack, reflected into the triangle of least squares.
-        let mut triangle = Rows::zeros(rank.len(), stiff + 1);
-        for (k, equation) in rank.iter().enumerate() {
-            let row = triangle.row_mut(k);
-            (0..stiff).for_each(|j| row[j] = directions.row(j)[size + k]);
-            row[stiff] = equation.lacking(&self.nearest);
-        }
-        (0..stiff).for_each(|k| triangle.reflect(k, k));
-        for k in (0..stiff).rev() {
-            let row = triangle.row(k);
-            let step = row[stiff] / row[k];
-            (0..k).for_each(|j| triangle.row_mut(j)[stiff] -= step * triangle.row(j)[k]);
-            self.nearest.iter_mut().zip(directions.row(k)).for_each(|(reaction, part)| *reaction += step * part);
-        }
-        self.squeezes = Rows::zeros(directions.len() - stiff, size);
-        for k in stiff..directions.len() {
-            self.squeezes.row_mut(k - stiff).copy_from_slice(&directions.row(k)[..size]);
-        }
+        let mut squeezes = Rows::zeros(size - stiff, size);
+        (stiff..size).for_each(|k| squeezes.row_mut(k - stiff).copy_from_slice(&directions.row(k)[..size]));
+        Shares { nearest, squeezes }
     }
 
     /// The choice whose reactions are nearest to these.
@@ -117,6 +82,46 @@ impl Shares {
     }
 }
 
+/// Meets a further rank, from `column` of the directions on, as nearly as those from the `first` on allow, by a complete orthogonal
+/// decomposition. Gives the first direction that is still free: no equation feels more than `free` of it.
+fn meet(
+    rank: &[Equation],
+    column: usize,
+    directions: &mut Rows,
+    first: usize,
+    free: f64,
+    nearest: &mut [f64],
+) -> usize {
+    // Reflected so that, of those that are left, the equation that feels most feels one direction alone: that is stiff.
+    let mut stiff = first;
+    while stiff < directions.len() {
+        let mut felt: SmallVec<[f64; 16]> = SmallVec::from_elem(0.0, rank.len());
+        for k in stiff..directions.len() {
+            felt.iter_mut().zip(&directions.row(k)[column..]).for_each(|(sum, x)| *sum += x * x);
+        }
+        let most = felt.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
+        let Some((equation, _)) = most.filter(|(_, felt)| **felt > free) else { break };
+        directions.reflect(stiff, column + equation);
+        stiff += 1;
+    }
+    // What the equations feel of stiff directions, and what they lack, reflected into the triangle of least squares.
+    let count = stiff - first;
+    let mut triangle = Rows::zeros(rank.len(), count + 1);
+    for (k, equation) in rank.iter().enumerate() {
+        let row = triangle.row_mut(k);
+        (0..count).for_each(|j| row[j] = directions.row(first + j)[column + k]);
+        row[count] = equation.lacking(nearest);
+    }
+    (0..count).for_each(|k| triangle.reflect(k, k));
+    for k in (0..count).rev() {
+        let row = triangle.row(k);
+        let step = row[count] / row[k];
+        (0..k).for_each(|j| triangle.row_mut(j)[count] -= step * triangle.row(j)[k]);
+        nearest.iter_mut().zip(directions.row(first + k)).for_each(|(reaction, part)| *reaction += step * part);
+    }
+    stiff
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -131,6 +136,10 @@ mod tests {
             (columns.collect(), any(1)[0])
         };
         (0..count).map(|_| equation()).collect()
+    }
+
+    fn felt(equation: &Equation, reactions: &[f64]) -> f64 {
+        dot(equation.columns, reactions) / equation.unit
     }
 
     /// The conditions of what is nearest, rank by rank: no direction that is free when a rank has its turn would meet it better,
@@ -157,7 +166,7 @@ mod tests {
             for (k, (count, rank)) in dimensions.into_iter().enumerate() {
                 let before = Shares::new(&ranks[..k], &equal).squeezes;
                 for direction in before.iter() {
-                    let gain: f64 = ranks[k].iter().map(|e| e.felt(direction) * e.lacking(&shares.nearest)).sum();
+                    let gain: f64 = ranks[k].iter().map(|e| felt(e, direction) * e.lacking(&shares.nearest)).sum();
                     assert!(gain.abs() < 1e-12 * large, "{trial}: {gain}");
                 }
                 free -= free.min(rank).min(count);
@@ -165,7 +174,7 @@ mod tests {
             assert_eq!(shares.squeezes.len(), free, "{trial}");
             for (k, squeeze) in shares.squeezes.iter().enumerate() {
                 assert!(dot(squeeze, &change).abs() < 1e-12 * large, "{trial}");
-                assert!(ranks.iter().flatten().all(|e| e.felt(squeeze).abs() < 1e-12), "{trial}");
+                assert!(ranks.iter().flatten().all(|e| felt(e, squeeze).abs() < 1e-12), "{trial}");
                 for (j, other) in shares.squeezes.iter().enumerate() {
                     assert!((dot(squeeze, other) - f64::from(j == k)).abs() < 1e-14, "{trial}");
                 }
