@@ -7,11 +7,11 @@ fn affine(at: f64, slope: f64) -> Affine {
 }
 
 fn line(joint: usize, at: f64, slope: f64) -> Room {
-    Room { limit: Limit::Torque(joint), height: affine(at, slope), tangential: None }
+    Room { limit: Limit::Torque(joint), height: affine(at, slope), tangential: Default::default() }
 }
 
 fn cone(leg: usize, height: [f64; 2], tangential: [[f64; 2]; 3]) -> Room {
-    let tangential = Some(tangential.map(|[at, slope]| affine(at, slope)));
+    let tangential = tangential.map(|[at, slope]| affine(at, slope)).into_iter().collect();
     Room { limit: Limit::Friction(leg), height: affine(height[0], height[1]), tangential }
 }
 
@@ -43,13 +43,15 @@ fn agrees(rooms: &[Room], what: &str) {
     }
 }
 
-/// Limits like those of two feet and their joints: each joint both ways, and two cones.
+/// Limits like those of two feet and their joints: each joint both ways, as two lines or as one magnitude, and two cones.
 fn drawn(rng: &mut fastrand::Rng) -> Vec<Room> {
     let mut any = |size: f64| size * (2.0 * rng.f64() - 1.0);
     let mut rooms = Vec::new();
     for joint in 0..3 {
         let (at, slope) = (any(1.2), any(0.1));
         rooms.extend([line(joint, 1.0 - at, -slope), line(joint, 1.0 + at, slope)]);
+        let tangential = [affine(any(1.2), any(0.1))].into_iter().collect();
+        rooms.push(Room { limit: Limit::Speed(joint), height: affine(1.0, 0.0), tangential });
     }
     for leg in 0..2 {
         let (at, slope) = (0.7 + any(0.7), any(0.05));

@@ -6,6 +6,7 @@ use super::cost::Motor;
 use super::posture::{Legs, Posture};
 use super::rows::dot;
 use super::shares::{Shares, Squeeze};
+use smallvec::{SmallVec, smallvec};
 
 /// A limit of §6.1 for one real leg or joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,8 +26,8 @@ pub enum Limit {
 pub struct Room {
     pub limit: Limit,
     pub height: Affine,
-    /// Of friction alone.
-    pub tangential: Option<[Affine; 3]>,
+    /// Of friction three components, of a joint its torque; of a vertical force none.
+    pub tangential: SmallVec<[Affine; 3]>,
 }
 
 /// `at + slope · s`.
@@ -50,6 +51,11 @@ impl Affine {
         Affine { at: part(&shares.nearest), slope }
     }
 
+    /// The same for any choice.
+    fn constant(at: f64, shares: &Shares) -> Affine {
+        Affine { at, slope: Squeeze::from_elem(0.0, shares.squeezes.len()) }
+    }
+
     /// `constant + factor · this`.
     pub fn mapped(&self, constant: f64, factor: f64) -> Affine {
         let mut slope = Squeeze::from_slice(&self.slope);
@@ -64,7 +70,7 @@ impl Affine {
 
 impl Room {
     pub fn margin(&self, s: &[f64]) -> f64 {
-        let square: f64 = self.tangential.iter().flatten().map(|t| t.value(s).powi(2)).sum();
+        let square: f64 = self.tangential.iter().map(|t| t.value(s).powi(2)).sum();
         self.height.value(s) - square.sqrt()
     }
 }
@@ -77,7 +83,7 @@ impl Limits<'_> {
         let weight = self.legs.weight() / stance.len() as f64;
         let least = d.limits.min_vertical_force / self.legs.weight();
         let mut rooms = self.feet(stance, posture, shares, weight, least);
-        rooms.reserve(4 * motors.len());
+        rooms.reserve(2 * motors.len());
         let standing = stance.iter().flat_map(|leg| w.legs[*leg].joints.clone());
         let all = if stance.is_empty() { 0..w.joints.len() } else { 0..0 };
         for joint in standing.chain(all) {
@@ -85,11 +91,12 @@ impl Limits<'_> {
             let most = limits.max_torque / sharing;
             let slowed = (limits.unloaded_speed - limits.loaded_speed) / limits.unloaded_speed;
             let rate = rate.abs() / limits.unloaded_speed;
-            for sign in [1.0, -1.0] {
-                let used = sign / most;
-                rooms.push(Room::straight(Limit::Torque(joint), torque.mapped(1.0, -used)));
-                rooms.push(Room::straight(Limit::Speed(joint), torque.mapped(1.0 - rate, -slowed * used)));
-            }
+            let mut push = |limit, most, used| {
+                let height = Affine::constant(most, shares);
+                rooms.push(Room { limit, height, tangential: smallvec![torque.mapped(0.0, used)] });
+            };
+            push(Limit::Torque(joint), 1.0, 1.0 / most);
+            push(Limit::Speed(joint), 1.0 - rate, slowed / most);
         }
         rooms
     }
@@ -107,13 +114,14 @@ impl Limits<'_> {
         for (k, leg) in feet.iter().enumerate() {
             let along = |direction: [f64; 3]| Affine::of(&direction.map(|x| x / unit), 3 * k, shares);
             let vertical = along(up);
-            rooms.push(Room::straight(Limit::Vertical(*leg), vertical.mapped(-least, 1.0)));
+            let height = vertical.mapped(-least, 1.0);
+            rooms.push(Room { limit: Limit::Vertical(*leg), height, tangential: SmallVec::new() });
             // The part of each axis of the platform that is tangential to the ground.
-            let tangential = [0, 1, 2].map(|i| along([0, 1, 2].map(|j| f64::from(i == j) - up[i] * up[j])));
+            let tangential = (0..3).map(|i| along([0, 1, 2].map(|j| f64::from(i == j) - up[i] * up[j])));
             rooms.push(Room {
                 limit: Limit::Friction(*leg),
                 height: vertical.mapped(0.0, self.legs.description.limits.friction),
-                tangential: Some(tangential),
+                tangential: tangential.collect(),
             });
         }
         rooms
@@ -128,11 +136,5 @@ impl Limits<'_> {
             Limit::Torque(joint) => format!("torque of {}", w.joints[joint].name),
             Limit::Speed(joint) => format!("torque–speed of {}", w.joints[joint].name),
         }
-    }
-}
-
-impl Room {
-    fn straight(limit: Limit, height: Affine) -> Room {
-        Room { limit, height, tangential: None }
     }
 }

@@ -24,7 +24,7 @@ use piaffe_verify::multibody::Multibody;
 use piaffe_verify::numbers::Numbers;
 
 /// Parameters that are taken together.
-pub const LANES: usize = 8;
+pub const LANES: usize = 14;
 
 /// With derivatives in the parameters, then in β and β̇ of an instant.
 type Number = Dual<f64, { LANES + 2 }>;

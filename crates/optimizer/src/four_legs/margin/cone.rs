@@ -33,8 +33,8 @@ fn maximize(rooms: &[Room], squeezes: usize) -> Option<Best> {
     // Clarabel's form is A·x + slack = b with the slack in a cone, minimizing q·x; x = [s, m].
     let (mut rows, mut b, mut cones, mut of) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for room in rooms {
-        let parts = 1 + room.tangential.iter().flatten().count();
-        for (k, part) in std::iter::once(&room.height).chain(room.tangential.iter().flatten()).enumerate() {
+        let parts = 1 + room.tangential.len();
+        for (k, part) in std::iter::once(&room.height).chain(&room.tangential).enumerate() {
             let mut row: Vec<f64> = part.slope.iter().map(|x| -x).collect();
             row.push(f64::from(k == 0));
             rows.push(row);

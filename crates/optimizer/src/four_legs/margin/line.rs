@@ -197,10 +197,10 @@ impl Curves {
 impl Curve {
     fn new(room: &Room) -> Curve {
         let square = |of: &mut dyn Iterator<Item = f64>| of.map(|x| x * x).sum::<f64>();
-        let slopes = square(&mut room.tangential.iter().flatten().map(|t| t.slope[0]));
-        let product: f64 = room.tangential.iter().flatten().map(|t| t.at * t.slope[0]).sum();
+        let slopes = square(&mut room.tangential.iter().map(|t| t.slope[0]));
+        let product: f64 = room.tangential.iter().map(|t| t.at * t.slope[0]).sum();
         let axis = if slopes > 0.0 { -product / slopes } else { 0.0 };
-        let depth = square(&mut room.tangential.iter().flatten().map(|t| t.at + t.slope[0] * axis)).sqrt();
+        let depth = square(&mut room.tangential.iter().map(|t| t.at + t.slope[0] * axis)).sqrt();
         Curve { limit: room.limit, height: room.height.at, slope: room.height.slope[0], k: slopes.sqrt(), axis, depth }
     }
 
