@@ -221,7 +221,7 @@ impl Role<'_> {
         self.gait.centre_of_mass(&x, &xd, &mut centre);
         let mut motors = Numbers::from_slice(&sample.quantities[y.torque(0)..][..nj]);
         for ((motor, friction), rate) in motors.iter_mut().zip(self.friction).zip(sample.state[1]) {
-            friction.into_iter().for_each(|friction| *motor += friction.torque(*rate));
+            friction.iter().for_each(|friction| *motor += friction.torque(*rate));
         }
         let force = match y.components() {
             0 => [0.0; 3],

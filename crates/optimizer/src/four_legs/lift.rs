@@ -143,7 +143,7 @@ impl Legs<'_> {
         let (mut demand, columns) = (equations.demand(&posture.ud), equations.columns(&stance));
         // What overcomes friction is demanded of the motors, too.
         for ((demand, friction), rate) in demand[PLATFORM..].iter_mut().zip(&self.friction).zip(posture.rates()) {
-            friction.into_iter().for_each(|friction| *demand += friction.torque(*rate));
+            friction.iter().for_each(|friction| *demand += friction.torque(*rate));
         }
         let equal = self.equal(&posture, &stance, m.force);
         // The platform has no motors: its six equations are the reactions' alone. In flight nothing is left to meet them: they hold,
