@@ -1,24 +1,22 @@
 //! The share of two feet with the most room: what is found exactly against a cone program's solution.
 
-use nalgebra::DVector;
 use piaffe::four_legs::{Affine, Limit, Room, best, cone};
 
 fn affine(at: f64, slope: f64) -> Affine {
-    Affine { at, slope: DVector::from_element(1, slope) }
+    Affine { at, slope: [slope][..].into() }
 }
 
 fn line(joint: usize, at: f64, slope: f64) -> Room {
-    Room { limit: Limit::Torque(joint), height: affine(at, slope), tangential: Vec::new() }
+    Room { limit: Limit::Torque(joint), height: affine(at, slope), tangential: Default::default() }
 }
 
 fn cone(leg: usize, height: [f64; 2], tangential: [[f64; 2]; 3]) -> Room {
-    let tangential = tangential.map(|[at, slope]| affine(at, slope)).to_vec();
+    let tangential = tangential.map(|[at, slope]| affine(at, slope)).into_iter().collect();
     Room { limit: Limit::Friction(leg), height: affine(height[0], height[1]), tangential }
 }
 
 fn least(rooms: &[Room], s: f64) -> f64 {
-    let s = DVector::from_element(1, s);
-    rooms.iter().map(|room| room.margin(&s)).fold(f64::INFINITY, f64::min)
+    rooms.iter().map(|room| room.margin(&[s])).fold(f64::INFINITY, f64::min)
 }
 
 /// The same margin as Clarabel's to 1e-9, from the same share where only one has it, proven by its weights.
@@ -35,9 +33,8 @@ fn agrees(rooms: &[Room], what: &str) {
     // The weighed limits alone have no more room anywhere.
     assert!((found.binding.iter().map(|(_, weight)| weight).sum::<f64>() - 1.0).abs() < 2e-3, "{what}: {found:?}");
     let bound = |s: f64| {
-        let s = DVector::from_element(1, s);
         let of = |limit: Limit| {
-            rooms.iter().filter(|r| r.limit == limit).map(|r| r.margin(&s)).fold(f64::INFINITY, f64::min)
+            rooms.iter().filter(|r| r.limit == limit).map(|r| r.margin(&[s])).fold(f64::INFINITY, f64::min)
         };
         found.binding.iter().map(|(limit, _)| of(*limit)).fold(f64::INFINITY, f64::min)
     };
@@ -46,13 +43,15 @@ fn agrees(rooms: &[Room], what: &str) {
     }
 }
 
-/// Limits like those of two feet and their joints: each joint both ways, and two cones.
+/// Limits like those of two feet and their joints: each joint both ways, as two lines or as one magnitude, and two cones.
 fn drawn(rng: &mut fastrand::Rng) -> Vec<Room> {
     let mut any = |size: f64| size * (2.0 * rng.f64() - 1.0);
     let mut rooms = Vec::new();
     for joint in 0..3 {
         let (at, slope) = (any(1.2), any(0.1));
         rooms.extend([line(joint, 1.0 - at, -slope), line(joint, 1.0 + at, slope)]);
+        let tangential = [affine(any(1.2), any(0.1))].into_iter().collect();
+        rooms.push(Room { limit: Limit::Speed(joint), height: affine(1.0, 0.0), tangential });
     }
     for leg in 0..2 {
         let (at, slope) = (0.7 + any(0.7), any(0.05));

@@ -3,7 +3,7 @@
 use crate::motions::{Random, gaits, stepping};
 use nalgebra::Vector3;
 use piaffe::model::{Description, Gait, Mode, Rotation};
-use piaffe::verify::{Sample, impact::impact, multibody::Multibody, sample};
+use piaffe::verify::{Sample, impact::impact, multibody::Multibody, sample, support::Support};
 
 pub const POINTS: usize = 1001;
 
@@ -54,6 +54,16 @@ fn momentum_about_the_stance_foot_changes_by_gravity_alone() {
             });
             gait.momentum_terms(Mode::Stance(leg), &five[2].q, &five[2].qd, &mut terms);
             let (found, moment) = (rate(sigma, h), terms[4]);
+            // The verifier's own, which sensitivities are derived from.
+            let (mut support, mut qdd) = (Support::new(gait.description(), leg), five[2].qdd.clone());
+            support.accelerate(&five[2].q, &five[2].qd, &mut qdd).unwrap();
+            for (own, kernel) in support.momentum().into_iter().zip([terms[2], moment]) {
+                assert!(
+                    (own - kernel).abs() < 1e-10 * kernel.abs().max(1.0),
+                    "{}: {own} {kernel}",
+                    gait.description().gait
+                );
+            }
             assert!(
                 (found - moment).abs() < 1e-6 * moment.abs().max(1.0),
                 "{}: {found} N·m instead of {moment} N·m",

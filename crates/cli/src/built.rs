@@ -76,8 +76,13 @@ pub struct Changed {
     pub how: &'static str,
 }
 
-/// All of these, where the folder of the specification is here.
-pub fn changed() -> Vec<Changed> {
+/// All of these, where the folder of the specification is here: as they are when this is first asked.
+pub fn changed() -> &'static [Changed] {
+    static CHANGED: OnceLock<Vec<Changed>> = OnceLock::new();
+    CHANGED.get_or_init(compare)
+}
+
+fn compare() -> Vec<Changed> {
     let now = files();
     if now.is_empty() {
         return Vec::new();

@@ -265,7 +265,7 @@ pub fn note_of<'k>(keys: impl IntoIterator<Item = &'k str>) {
         choice.is_none_or(|choice| matches!(choice.origin, Origin::Files(_)))
     };
     let modules: BTreeSet<&str> = keys.into_iter().filter(|key| derived(key)).map(built::module).collect();
-    let changed: Vec<Changed> = built::changed().into_iter().filter(|file| modules.contains(&*file.module)).collect();
+    let changed: Vec<&Changed> = built::changed().iter().filter(|file| modules.contains(&*file.module)).collect();
     if changed.is_empty() {
         return;
     }

@@ -34,10 +34,11 @@ impl Description {
 
     /// A description whose numbers are `slopes`, by index, and else 0: a direction in which a description can change.
     pub fn direction(&self, slopes: &[(usize, f64)]) -> Description {
-        let mut numbers = vec![0.0; self.numbers().len()];
-        slopes.iter().for_each(|(index, slope)| numbers[*index] = *slope);
-        let (mut direction, mut rest) = (self.clone(), numbers.into_iter());
-        direction.for_each_number(&mut |number| *number = rest.next().unwrap_or(0.0));
+        let (mut direction, mut index) = (self.clone(), 0);
+        direction.for_each_number(&mut |number| {
+            *number = slopes.iter().rev().find(|(of, _)| *of == index).map_or(0.0, |(_, slope)| *slope);
+            index += 1;
+        });
         direction
     }
 

@@ -94,11 +94,12 @@ impl<'a> Walk<'a> {
         let cycle = Cycle::resolving(gait, Criterion::Torque, 1.0, &theta(motion))?;
         let count = d.phases.len();
         let rounds = if d.then == Then::Mirrored { 2 } else { 1 };
+        let friction = Friction::all(d);
         let (mut phases, mut moments) = (Vec::new(), Vec::new());
         // Where positions of a phase are from: the stance foot, or the ground below the mass centre at take-off.
         let (mut origin, mut start) = ([0.0; 3], 0.0);
         for phase in 0..rounds * count {
-            let (k, role) = (phase % count, Role { gait, mirrored: phase >= count });
+            let (k, role) = (phase % count, Role { gait, friction: &friction, mirrored: phase >= count });
             let mode = role.mode(d.phases[k].mode);
             let span = Span { start, duration: motion.phases[k].duration, mode };
             let ends = [0, cycle.last_node(k)].map(|node| cycle.sample(k, node));
@@ -144,9 +145,14 @@ impl<'a> Walk<'a> {
     }
 }
 
+/// Of a moment, on the way to it.
+type Numbers = smallvec::SmallVec<[f64; 16]>;
+
 /// How a phase of the gait is performed: as it is, or by the other legs.
 struct Role<'a> {
     gait: &'a dyn Gait,
+    /// Of each joint.
+    friction: &'a [Option<Friction>],
     mirrored: bool,
 }
 
@@ -178,9 +184,8 @@ impl Role<'_> {
         let mut feet = [origin; 2];
         let components = self.gait.description().positions();
         // In the order of the legs as the phase calls them.
-        let swinging: Vec<usize> = self.mode(mode).swinging().map(|leg| self.leg(leg)).collect();
-        for (leg, foot) in swinging.into_iter().zip(sample.feet.chunks(components)) {
-            feet[leg] = add(origin, self.point(foot));
+        for (leg, foot) in self.mode(mode).swinging().zip(sample.feet.chunks(components)) {
+            feet[self.leg(leg)] = add(origin, self.point(foot));
         }
         feet
     }
@@ -200,21 +205,23 @@ impl Role<'_> {
         let (y, shape) = (Quantities::new(d, mode), &d.shape(mode).inverse);
         let (nc, nj) = (d.positions(), d.joints());
         let [q, qd, qdd] = sample.state.map(|v| self.renamed(v));
-        let prescribed: Vec<f64> = (0..d.prescribed()).map(|k| qdd[d.prescribed_index(k)]).collect();
-        let mut velocity = vec![0.0; nc];
-        self.gait.platform_velocity(mode, &q, &qd, &mut velocity);
+        let prescribed: Numbers = (0..d.prescribed()).map(|k| qdd[d.prescribed_index(k)]).collect();
+        let mut velocity = [0.0; 3];
+        let velocity = &mut velocity[..nc];
+        self.gait.platform_velocity(mode, &q, &qd, velocity);
         velocity.iter_mut().zip(sample.centre_velocity).for_each(|(v, centre)| *v += centre);
         let mut inverse = shape.zeros();
         self.gait.inverse(mode, &q, &qd, &prescribed, &mut inverse);
-        let plain = Role { gait: self.gait, mirrored: false };
+        let plain = Role { mirrored: false, ..*self };
         let platform = add(origin, self.point(&sample.platform));
         let centre_shape = &d.shapes.centre_of_mass;
         let mut centre = centre_shape.zeros();
-        let (x, xd) = ([&platform[..nc], &q].concat(), [&velocity[..], &qd].concat());
+        let together = |a: &[f64], b: &[f64]| a.iter().chain(b).copied().collect::<Numbers>();
+        let (x, xd) = (together(&platform[..nc], &q), together(velocity, &qd));
         self.gait.centre_of_mass(&x, &xd, &mut centre);
-        let mut motors = sample.quantities[y.torque(0)..][..nj].to_vec();
-        for ((motor, friction), rate) in motors.iter_mut().zip(Friction::all(d)).zip(sample.state[1]) {
-            friction.into_iter().for_each(|friction| *motor += friction.torque(*rate));
+        let mut motors = Numbers::from_slice(&sample.quantities[y.torque(0)..][..nj]);
+        for ((motor, friction), rate) in motors.iter_mut().zip(self.friction).zip(sample.state[1]) {
+            friction.iter().for_each(|friction| *motor += friction.torque(*rate));
         }
         let force = match y.components() {
             0 => [0.0; 3],
@@ -226,7 +233,7 @@ impl Role<'_> {
             share: sample.share,
             mode,
             transition: Transition::Touchdown(0),
-            platform: [platform, plain.point(&velocity), plain.point(&shape.xdd.of(&inverse)[..nc])],
+            platform: [platform, plain.point(velocity), plain.point(&shape.xdd.of(&inverse)[..nc])],
             centre: [centre_shape.position, centre_shape.velocity].map(|block| plain.point(block.of(&centre))),
             torque: self.renamed(&motors),
             force,

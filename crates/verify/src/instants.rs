@@ -120,6 +120,11 @@ impl<'a, T: Scalar> Instants<'a, T> {
         either!(&mut self.support, support => support.accelerate(&state.q, &state.qd, &mut state.qdd))
     }
 
+    /// σ and its rate for the state of the last [`Instants::accelerate`]; see [`Support::momentum`].
+    pub fn momentum(&self) -> [T; 2] {
+        either!(&self.support, support => support.momentum())
+    }
+
     /// Everything at time `t`, into `state`; returns β̈. `None` where f1 vanishes.
     pub fn at(&mut self, t: T, beta: [T; 2], state: &mut State<T>) -> Option<T> {
         let acceleration = self.accelerate(t, beta, state)?;

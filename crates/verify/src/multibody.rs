@@ -220,18 +220,20 @@ impl<'a, T: Scalar> Multibody<'a, T> {
     /// A(q) of eq. 5, row-major, kg, kg·m and kg·m².
     pub fn inertia(&self, out: &mut [T]) {
         let n = self.size();
-        for row in 0..n {
+        out.fill(T::zero());
+        for (b, body) in self.numbers.bodies.iter().enumerate() {
             for column in 0..n {
-                let mut sum = T::zero();
-                for (b, body) in self.numbers.bodies.iter().enumerate() {
-                    let [(v, w), (u, s)] = [self.partials(row, b), self.partials(column, b)];
-                    sum += body.mass * v.dot(&u) + w.dot(&self.spin_momentum(b, s));
+                let (u, s) = self.partials(column, b);
+                let (momentum, spin_momentum) = (u * body.mass, self.spin_momentum(b, s));
+                for row in 0..=column {
+                    let (v, w) = self.partials(row, b);
+                    out[row * n + column] += v.dot(&momentum) + w.dot(&spin_momentum);
                 }
-                if row == column {
-                    sum += self.rotor(row);
-                }
-                out[row * n + column] = sum;
             }
+        }
+        for row in 0..n {
+            out[row * n + row] += self.rotor(row);
+            (0..row).for_each(|column| out[row * n + column] = out[column * n + row]);
         }
     }
 

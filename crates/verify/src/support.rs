@@ -121,6 +121,25 @@ impl<'a, T: Scalar, G: Geometry<T>> Support<'a, T, G> {
         Some(acceleration)
     }
 
+    /// Angular momentum about the stance foot, or in flight the mass centre, along the free direction, kg·m²/s, and the moment of the
+    /// weight, which is its rate (eq. 9), N·m; for the state of the last [`Support::accelerate`].
+    pub fn momentum(&self) -> [T; 2] {
+        let (multibody, numbers) = (&self.multibody, self.multibody.numbers());
+        let (origin, weight) = match self.leg {
+            Some(leg) => (*multibody.foot(leg), G::up(-numbers.gravity)),
+            None => (multibody.centre(), G::Vector::zero()),
+        };
+        let (mut momentum, mut moment) = (G::Spin::zero(), G::Spin::zero());
+        for (b, body) in numbers.bodies.iter().enumerate() {
+            let com = multibody.com(b);
+            let arm = com.position - origin.position;
+            momentum += G::moment(arm, (com.velocity - origin.velocity) * body.mass);
+            momentum += multibody.spin_momentum(b, multibody.spin(b));
+            moment += G::moment(arm, weight * body.mass);
+        }
+        [momentum, moment].map(|of| G::about(of, self.axis))
+    }
+
     /// The torque of every joint, N·m, and the reaction on the stance foot, N, for the state of the
     /// last [`Support::accelerate`], whose `qdd` is complete.
     pub fn torques(&mut self, qdd: &[T], torques: &mut [T]) -> G::Vector {

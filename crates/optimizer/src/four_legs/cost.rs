@@ -5,7 +5,6 @@
 
 use super::lift::Lift;
 use super::limits::Affine;
-use nalgebra::DVector;
 use piaffe_model::motion::Costs;
 use serde::{Deserialize, Serialize};
 
@@ -45,7 +44,7 @@ pub struct Motor {
 
 impl Effort {
     /// For one choice of shares, or two: one for the powers and one for the torques.
-    pub fn new(motors: &[Motor], for_energy: &DVector<f64>, for_torque: &DVector<f64>) -> Effort {
+    pub fn new(motors: &[Motor], for_energy: &[f64], for_torque: &[f64]) -> Effort {
         let square = |motor: &Motor| motor.sharing * motor.torque.value(for_torque).powi(2);
         Effort {
             powers: motors.iter().map(|motor| motor.torque.value(for_energy) * motor.rate).collect(),
@@ -93,7 +92,7 @@ impl RealCosts {
                 let over_time = |of: &dyn Fn(&Effort) -> f64| {
                     efforts().map(|(time, effort)| (time, of(effort))).collect::<Vec<_>>()
                 };
-                work.torque += integral(&over_time(&|effort| effort.torque), |parabola, to| parabola.integral(0.0, to));
+                work.torque += integral(&over_time(&|effort| effort.torque), |parabola, to| parabola.integral(to));
                 for joint in 0..joints {
                     work.energy += integral(&over_time(&|effort| effort.powers[joint]), Parabola::magnitude);
                 }
@@ -113,9 +112,9 @@ impl RealCosts {
 struct Parabola([f64; 3]);
 
 impl Parabola {
-    fn integral(&self, from: f64, to: f64) -> f64 {
-        let at = |t: f64| t * (self.0[0] + t * (self.0[1] / 2.0 + t * self.0[2] / 3.0));
-        at(to) - at(from)
+    /// From 0.
+    fn integral(&self, to: f64) -> f64 {
+        to * (self.0[0] + to * (self.0[1] / 2.0 + to * self.0[2] / 3.0))
     }
 
     /// The integral of its magnitude from 0, sign by sign.
@@ -124,14 +123,9 @@ impl Parabola {
         let root = (c1 * c1 - 4.0 * c0 * c2).sqrt();
         // Written so that nothing cancels; what is no root is no number, or outside.
         let q = -0.5 * (c1 + root.copysign(c1));
-        let mut ends = [q / c2, c0 / q, to];
-        ends.sort_by(f64::total_cmp);
-        let (mut sum, mut from) = (0.0, 0.0);
-        for end in ends.into_iter().filter(|end| *end > 0.0 && *end <= to) {
-            sum += self.integral(from, end).abs();
-            from = end;
-        }
-        sum
+        let [a, b] = [q / c2, c0 / q].map(|root| if root > 0.0 && root < to { root } else { to });
+        let at = [0.0, a.min(b), a.max(b), to].map(|end| self.integral(end));
+        at.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum()
     }
 }
 
@@ -162,7 +156,7 @@ mod tests {
         let f = |t: f64| 1.0 + t - 3.0 * t * t;
         let points: Vec<(f64, f64)> = [0.0, 0.3, 1.0, 1.1, 2.0].map(|t| (t, f(t))).to_vec();
         let whole = |t: f64| t + t * t / 2.0 - t * t * t;
-        let plain = integral(&points, |parabola, to| parabola.integral(0.0, to));
+        let plain = integral(&points, |parabola, to| parabola.integral(to));
         assert!((plain - whole(2.0)).abs() < 1e-12);
         let root = (1.0 + 13f64.sqrt()) / 6.0;
         assert!((integral(&points, Parabola::magnitude) - (2.0 * whole(root) - whole(2.0))).abs() < 1e-12);
@@ -181,15 +175,10 @@ mod tests {
         let mut any = || 2.0 * rng.f64() - 1.0;
         for _ in 0..100 {
             let motors: Vec<Motor> = (0..6)
-                .map(|_| Motor {
-                    torque: Affine { at: any(), slope: DVector::from_element(1, any()) },
-                    rate: any(),
-                    sharing: 2.0,
-                })
+                .map(|_| Motor { torque: Affine { at: any(), slope: [any()][..].into() }, rate: any(), sharing: 2.0 })
                 .collect();
             let at = |s: f64| {
-                let s = DVector::from_element(1, s);
-                let effort = Effort::new(&motors, &s, &s);
+                let effort = Effort::new(&motors, &[s], &[s]);
                 (effort.powers.iter().map(|power| power.abs()).sum::<f64>(), effort.torque)
             };
             let (energy, torque) = (at(least_energy(&motors)).0, at(least_torque(&motors)).1);

@@ -1,78 +1,70 @@
 //! The equations of motion of the whole robot at one posture, A u̇ + H = Sᵀ Γ + D F, and of an impact, A Δu = D I.
 
 use super::posture::Posture;
-use super::shares::Rank;
-use nalgebra::{DMatrix, DVector, DVectorView};
-use piaffe_model::whole::Whole;
+use super::rows::{Rows, dot};
+use super::shares::Equation;
+use piaffe_model::whole::{Shapes, Whole};
 
 /// Speeds of the platform, which no motor drives: of its mass centre, and of its turning.
 pub const PLATFORM: usize = 6;
 
 /// A, H and D.
 pub struct Equations {
-    pub inertia: DMatrix<f64>,
-    pub bias: DVector<f64>,
-    /// n × 3 per leg, platform's axes.
-    pub feet: DMatrix<f64>,
+    shapes: Shapes,
+    inertia_and_bias: Vec<f64>,
+    /// Places, and D: n × 3 per leg, platform's axes.
+    feet: Vec<f64>,
     length: f64,
 }
 
 impl Equations {
     /// `length` (m) makes moments comparable with forces: that of a leg.
     pub fn new(whole: &dyn Whole, posture: &Posture, length: f64) -> Equations {
-        let d = whole.description();
-        let (n, c) = (d.speeds(), d.reactions());
-        let (equations, places) = (&d.shapes.inertia_and_bias, &d.shapes.feet);
-        let mut out = equations.zeros();
-        whole.inertia_and_bias(&posture.up(), &posture.omega(), &posture.q, posture.rates(), &mut out);
-        let mut feet = places.zeros();
+        let shapes = whole.description().shapes;
+        let (mut inertia_and_bias, mut feet) = (shapes.inertia_and_bias.zeros(), shapes.feet.zeros());
+        whole.inertia_and_bias(&posture.up(), &posture.omega(), &posture.q, posture.rates(), &mut inertia_and_bias);
         whole.feet(&posture.q, &mut feet);
-        Equations {
-            inertia: DMatrix::from_row_slice(n, n, equations.a.of(&out)),
-            bias: DVector::from_column_slice(equations.h.of(&out)),
-            feet: DMatrix::from_row_slice(n, c, places.jacobian.of(&feet)),
-            length,
-        }
+        Equations { shapes, inertia_and_bias, feet, length }
     }
 
     /// What torques and reactions must add up to: A u̇ + H.
-    pub fn demand(&self, ud: &[f64]) -> DVector<f64> {
-        &self.inertia * DVectorView::from_slice(ud, ud.len()) + &self.bias
+    pub fn demand(&self, ud: &[f64]) -> Vec<f64> {
+        let bias = self.shapes.inertia_and_bias.h.of(&self.inertia_and_bias);
+        self.momentum(ud).zip(bias).map(|(momentum, bias)| momentum + bias).collect()
     }
 
     /// What impulses must add up to: A Δu.
-    pub fn impulse_demand(&self, change: &[f64]) -> DVector<f64> {
-        &self.inertia * DVectorView::from_slice(change, change.len())
+    pub fn impulse_demand(&self, change: &[f64]) -> Vec<f64> {
+        self.momentum(change).collect()
+    }
+
+    /// A times speeds, or their derivatives.
+    fn momentum<'a>(&'a self, speeds: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        self.shapes.inertia_and_bias.a.each(&self.inertia_and_bias).map(move |row| dot(row, speeds))
     }
 
     /// Columns of D for the feet of `legs`.
-    pub fn columns(&self, legs: &[usize]) -> DMatrix<f64> {
-        let columns: Vec<usize> = legs.iter().flat_map(|leg| 3 * leg..3 * leg + 3).collect();
-        self.feet.select_columns(&columns)
+    pub fn columns(&self, legs: &[usize]) -> Rows {
+        let jacobian = self.shapes.feet.jacobian;
+        let mut columns = Rows::zeros(jacobian.rows(), 3 * legs.len());
+        for k in 0..jacobian.rows() {
+            let row = jacobian.row(&self.feet, k);
+            let feet = columns.row_mut(k).chunks_exact_mut(3);
+            feet.zip(legs).for_each(|(foot, leg)| foot.copy_from_slice(&row[3 * leg..][..3]));
+        }
+        columns
     }
 
     /// The first `rows` equations, of the feet's reactions alone, in two ranks: those that the virtual legs' model has too, so that
     /// equal shares meet them, and the two moments that it knows nothing of. `axis` is the one about which its platform may turn.
-    pub fn ranks(&self, columns: &DMatrix<f64>, demand: &DVector<f64>, rows: usize, axis: usize) -> [Rank; 2] {
-        let (modelled, others): (Vec<usize>, Vec<usize>) =
-            (0..rows).partition(|row| !(3..PLATFORM).contains(row) || *row == 3 + axis);
-        [modelled, others].map(|rows| {
-            // Moments over a length, so that they are forces like the others.
-            let unit = DVector::from_iterator(rows.len(), rows.iter().map(|row| self.unit(*row)));
-            let mut rank = Rank { columns: columns.select_rows(&rows), demand: demand.select_rows(&rows) };
-            rank.demand.component_div_assign(&unit);
-            rank.columns.column_iter_mut().for_each(|mut column| column.component_div_assign(&unit));
-            rank
-        })
-    }
-
-    /// Forces and moments as forces: moments over the leg's length.
-    pub fn as_forces(&self, v: &DVector<f64>) -> DVector<f64> {
-        DVector::from_iterator(v.len(), v.iter().enumerate().map(|(row, x)| x / self.unit(row)))
-    }
-
-    /// By what an equation is divided to be one of forces.
-    fn unit(&self, row: usize) -> f64 {
-        if row < 3 { 1.0 } else { self.length }
+    pub fn ranks<'a>(&self, columns: &'a Rows, demand: &[f64], rows: usize, axis: usize) -> [Vec<Equation<'a>>; 2] {
+        let modelled = |row: &usize| !(3..PLATFORM).contains(row) || *row == 3 + axis;
+        // Moments over a length, so that they are forces like the others.
+        let equation = |row: usize| Equation {
+            columns: columns.row(row),
+            demand: demand[row],
+            unit: if row < 3 { 1.0 } else { self.length },
+        };
+        [true, false].map(|rank| (0..rows).filter(|row| modelled(row) == rank).map(equation).collect())
     }
 }

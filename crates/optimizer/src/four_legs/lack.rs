@@ -2,7 +2,6 @@
 
 use super::equations::PLATFORM;
 use super::posture::Posture;
-use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 
 /// The largest part that equations of motion lack.
@@ -34,12 +33,15 @@ pub enum Component {
 impl Lack {
     pub const NONE: Lack = Lack { of: Component::VerticalForce, share: 0.0 };
 
-    /// The largest entry of what is left of the equations: forces and moments in the platform's axes, moments over the leg's
-    /// length, then those of joints; `unit` of a force.
-    pub fn new(left: &DVector<f64>, posture: &Posture, unit: f64) -> Lack {
+    /// The largest entry of what is left of the equations: forces and moments in the platform's axes, then moments at joints;
+    /// `unit` of a force, `length` of a leg.
+    pub fn new(left: &[f64], posture: &Posture, unit: f64, length: f64) -> Lack {
         let platform = |k: usize| posture.outside([left[k], left[k + 1], left[k + 2]]);
         let entries = platform(0).into_iter().chain(platform(3)).chain(left.iter().skip(PLATFORM).copied());
-        let each = entries.enumerate().map(|(row, x)| Lack { of: Component::of(row), share: x.abs() / unit });
+        let each = entries.enumerate().map(|(row, x)| {
+            let of = Component::of(row);
+            Lack { of, share: x.abs() / if of.is_moment() { unit * length } else { unit } }
+        });
         each.fold(Lack::NONE, Lack::larger)
     }
 

@@ -6,14 +6,16 @@ use super::lack::Lack;
 use super::limits::{Affine, Limit, Limits};
 use super::margin::{Choice, best};
 use super::posture::{Legs, Posture};
-use super::shares::Shares;
+use super::rows::{Rows, dot};
+use super::shares::{Reactions, Shares};
 use crate::flow::Undefined;
-use crate::friction::Friction;
 use crate::walk::{Moment, Point, Walk};
-use nalgebra::{DMatrix, DVector};
 use piaffe_model::Gait;
 use piaffe_model::motion::Motion;
 use rayon::prelude::*;
+
+/// Squeezes whose levers at a joint are shorter than this part of a leg do nothing there.
+const ROUNDING: f64 = 1e-12;
 
 /// Why there is no lifted motion.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -140,11 +142,8 @@ impl Legs<'_> {
         let stance: Vec<usize> = m.mode.stance().into_iter().flat_map(|leg| self.members(leg)).collect();
         let (mut demand, columns) = (equations.demand(&posture.ud), equations.columns(&stance));
         // What overcomes friction is demanded of the motors, too.
-        let friction = Friction::all(self.description);
-        for joint in 0..self.joints.len() {
-            if let Some(friction) = friction[self.joints[joint]] {
-                demand[PLATFORM + joint] += friction.shared(self.sharing(joint)).torque(posture.rates()[joint]);
-            }
+        for ((demand, friction), rate) in demand[PLATFORM..].iter_mut().zip(&self.friction).zip(posture.rates()) {
+            friction.iter().for_each(|friction| *demand += friction.torque(*rate));
         }
         let equal = self.equal(&posture, &stance, m.force);
         // The platform has no motors: its six equations are the reactions' alone. In flight nothing is left to meet them: they hold,
@@ -152,10 +151,10 @@ impl Legs<'_> {
         let shares = Shares::new(&equations.ranks(&columns, &demand, PLATFORM, self.axis()), &equal);
         let motors = self.motors(&posture, &shares, &demand, &columns);
         let rooms = Limits { legs: self }.instant(&stance, &posture, &shares, &motors);
-        let choice = Choice::new(&rooms, shares.squeezes.ncols()).ok_or(NotLifted::Unsolved { time: m.time })?;
+        let choice = Choice::new(&rooms, shares.squeezes.len()).ok_or(NotLifted::Unsolved { time: m.time })?;
         let proportional = shares.nearest_to(&self.proportional(&posture, &shares.nearest));
         // Of two feet the cheapest shares are known, of more feet not.
-        let (energy, torque) = match shares.squeezes.ncols() {
+        let (energy, torque) = match shares.squeezes.len() {
             1 => (least_energy(&motors), least_torque(&motors)),
             _ => (0.0, 0.0),
         };
@@ -174,13 +173,13 @@ impl Legs<'_> {
         };
         let best = choice.best;
 
-        let mut equal_lack = &demand - &columns * &equal;
+        let mut equal_lack = less(&demand, &columns, &equal);
         (0..self.joints.len()).for_each(|j| equal_lack[PLATFORM + j] -= m.torque[self.joints[j]] / self.sharing(j));
         let reactions = shares.reactions(&best.s);
-        let left = &demand - &columns * &reactions;
-        let torque = left.as_slice()[PLATFORM..].to_vec();
-        let lack = |left: &DVector<f64>| Lack::new(&equations.as_forces(left), &posture, self.weight());
-        let (lack, equal_lack) = (lack(&left.rows(0, PLATFORM).into_owned()), lack(&equal_lack));
+        let mut left = less(&demand, &columns, &reactions);
+        let torque = left.split_off(PLATFORM);
+        let lack = |left: &[f64]| Lack::new(left, &posture, self.weight(), self.description.leg_length());
+        let (lack, equal_lack) = (lack(&left), lack(&equal_lack));
         Ok(Instant {
             time: m.time,
             phase: m.phase,
@@ -221,11 +220,10 @@ impl Legs<'_> {
         let equal = self.equal(&posture, &landing, impulse);
         let shares = Shares::new(&equations.ranks(&columns, &demand, demand.len(), self.axis()), &equal);
         let rooms = Limits { legs: self }.impact(&landing, &posture, &shares);
-        let best = best(&rooms, shares.squeezes.ncols()).ok_or(NotLifted::Unsolved { time: m.time })?;
+        let best = best(&rooms, shares.squeezes.len()).ok_or(NotLifted::Unsolved { time: m.time })?;
         let impulses = shares.reactions(&best.s);
-        let lack = |impulses: &DVector<f64>| {
-            Lack::new(&equations.as_forces(&(&demand - &columns * impulses)), &posture, self.momentum())
-        };
+        let lack =
+            |impulses: &[f64]| Lack::new(&less(&demand, &columns, impulses), &posture, self.momentum(), d.leg_length());
         let (lack, equal_lack) = (lack(&impulses), lack(&equal));
         Ok(Impact {
             time: m.time,
@@ -242,44 +240,42 @@ impl Legs<'_> {
     }
 
     /// Equal shares of a virtual leg's reaction (world axes) in the platform's axes.
-    fn equal(&self, posture: &Posture, feet: &[usize], force: Point) -> DVector<f64> {
+    fn equal(&self, posture: &Posture, feet: &[usize], force: Point) -> Reactions {
         let share = posture.inside(force.map(|f| f / feet.len() as f64));
-        DVector::from_iterator(3 * feet.len(), feet.iter().flat_map(|_| share))
+        feet.iter().flat_map(|_| share).collect()
     }
 
     /// These reactions with their tangential parts in proportion to the vertical ones.
-    fn proportional(&self, posture: &Posture, reactions: &DVector<f64>) -> DVector<f64> {
-        let feet = reactions.as_slice().chunks_exact(3).map(|r| posture.outside([r[0], r[1], r[2]]));
+    fn proportional(&self, posture: &Posture, reactions: &[f64]) -> Reactions {
+        let feet = reactions.chunks_exact(3).map(|r| posture.outside([r[0], r[1], r[2]]));
         let all = feet.clone().fold([0.0; 3], |sum, foot| [0, 1, 2].map(|k| sum[k] + foot[k]));
-        let feet =
-            feet.flat_map(|foot| posture.inside([all[0] * foot[1] / all[1], foot[1], all[2] * foot[1] / all[1]]));
-        DVector::from_iterator(reactions.len(), feet)
+        feet.flat_map(|foot| posture.inside([all[0] * foot[1] / all[1], foot[1], all[2] * foot[1] / all[1]])).collect()
     }
 
     /// All joints with their torques over the choice of shares, Γ = demand − D F.
-    pub fn motors(
-        &self,
-        posture: &Posture,
-        shares: &Shares,
-        demand: &DVector<f64>,
-        columns: &DMatrix<f64>,
-    ) -> Vec<Motor> {
-        let torques = demand - columns * &shares.nearest;
-        let slopes = -(columns * &shares.squeezes);
-        let motor = |joint: usize| Motor {
-            torque: Affine { at: torques[PLATFORM + joint], slope: slopes.row(PLATFORM + joint).transpose() },
-            rate: posture.rates()[joint],
-            sharing: self.sharing(joint),
+    pub fn motors(&self, posture: &Posture, shares: &Shares, demand: &[f64], columns: &Rows) -> Vec<Motor> {
+        // A lever that is shorter is none but for rounding.
+        let shortest = ROUNDING * self.description.leg_length();
+        let motor = |joint: usize| {
+            let mut torque =
+                Affine::of(columns.row(PLATFORM + joint), 0, shares).mapped(demand[PLATFORM + joint], -1.0);
+            torque.slope.iter_mut().filter(|lever| lever.abs() < shortest).for_each(|lever| *lever = 0.0);
+            Motor { torque, rate: posture.rates()[joint], sharing: self.sharing(joint) }
         };
         (0..self.joints.len()).map(motor).collect()
     }
 
     /// Of all feet, in world axes.
-    fn spread(&self, posture: &Posture, feet: &[usize], reactions: &DVector<f64>) -> Vec<Point> {
+    fn spread(&self, posture: &Posture, feet: &[usize], reactions: &[f64]) -> Vec<Point> {
         let mut all = vec![[0.0; 3]; self.legs.len()];
-        for (leg, r) in feet.iter().zip(reactions.as_slice().chunks_exact(3)) {
+        for (leg, r) in feet.iter().zip(reactions.chunks_exact(3)) {
             all[*leg] = posture.outside([r[0], r[1], r[2]]);
         }
         all
     }
+}
+
+/// What reactions leave of the demand: demand − columns F.
+fn less(demand: &[f64], columns: &Rows, reactions: &[f64]) -> Vec<f64> {
+    columns.iter().zip(demand).map(|(row, demand)| demand - dot(row, reactions)).collect()
 }

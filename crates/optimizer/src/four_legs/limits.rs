@@ -4,8 +4,9 @@
 
 use super::cost::Motor;
 use super::posture::{Legs, Posture};
-use super::shares::Shares;
-use nalgebra::DVector;
+use super::rows::dot;
+use super::shares::{Shares, Squeeze};
+use smallvec::{SmallVec, smallvec};
 
 /// A limit of §6.1 for one real leg or joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,15 +26,15 @@ pub enum Limit {
 pub struct Room {
     pub limit: Limit,
     pub height: Affine,
-    /// None but for friction.
-    pub tangential: Vec<Affine>,
+    /// Of friction three components, of a joint its torque; of a vertical force none.
+    pub tangential: SmallVec<[Affine; 3]>,
 }
 
 /// `at + slope · s`.
 #[derive(Clone, Debug)]
 pub struct Affine {
     pub at: f64,
-    pub slope: DVector<f64>,
+    pub slope: Squeeze,
 }
 
 /// The limits of a gait's robot.
@@ -42,23 +43,33 @@ pub struct Limits<'a> {
 }
 
 impl Affine {
-    /// `weights · F` for reactions F that are shared by s.
-    fn of(weights: &DVector<f64>, shares: &Shares) -> Affine {
-        Affine { at: weights.dot(&shares.nearest), slope: shares.squeezes.transpose() * weights }
+    /// `weights · F` for the part F, from `first` on, of reactions that are shared by s.
+    pub fn of(weights: &[f64], first: usize, shares: &Shares) -> Affine {
+        let part = |reactions: &[f64]| dot(weights, &reactions[first..][..weights.len()]);
+        let mut slope = Squeeze::from_elem(0.0, shares.squeezes.len());
+        slope.iter_mut().zip(shares.squeezes.iter()).for_each(|(slope, squeeze)| *slope = part(squeeze));
+        Affine { at: part(&shares.nearest), slope }
+    }
+
+    /// The same for any choice.
+    fn constant(at: f64, shares: &Shares) -> Affine {
+        Affine { at, slope: Squeeze::from_elem(0.0, shares.squeezes.len()) }
     }
 
     /// `constant + factor · this`.
-    fn mapped(&self, constant: f64, factor: f64) -> Affine {
-        Affine { at: constant + factor * self.at, slope: &self.slope * factor }
+    pub fn mapped(&self, constant: f64, factor: f64) -> Affine {
+        let mut slope = Squeeze::from_slice(&self.slope);
+        slope.iter_mut().for_each(|slope| *slope *= factor);
+        Affine { at: constant + factor * self.at, slope }
     }
 
-    pub fn value(&self, s: &DVector<f64>) -> f64 {
-        self.at + self.slope.dot(s)
+    pub fn value(&self, s: &[f64]) -> f64 {
+        self.at + dot(&self.slope, s)
     }
 }
 
 impl Room {
-    pub fn margin(&self, s: &DVector<f64>) -> f64 {
+    pub fn margin(&self, s: &[f64]) -> f64 {
         let square: f64 = self.tangential.iter().map(|t| t.value(s).powi(2)).sum();
         self.height.value(s) - square.sqrt()
     }
@@ -72,20 +83,20 @@ impl Limits<'_> {
         let weight = self.legs.weight() / stance.len() as f64;
         let least = d.limits.min_vertical_force / self.legs.weight();
         let mut rooms = self.feet(stance, posture, shares, weight, least);
-        let joints: Vec<usize> = match stance {
-            [] => (0..w.joints.len()).collect(),
-            _ => stance.iter().flat_map(|leg| w.legs[*leg].joints.clone()).collect(),
-        };
-        for joint in joints {
+        rooms.reserve(2 * motors.len());
+        let standing = stance.iter().flat_map(|leg| w.legs[*leg].joints.clone());
+        let all = if stance.is_empty() { 0..w.joints.len() } else { 0..0 };
+        for joint in standing.chain(all) {
             let (limits, Motor { torque, rate, sharing }) = (&d.joints[self.legs.joints[joint]], &motors[joint]);
             let most = limits.max_torque / sharing;
             let slowed = (limits.unloaded_speed - limits.loaded_speed) / limits.unloaded_speed;
             let rate = rate.abs() / limits.unloaded_speed;
-            for sign in [1.0, -1.0] {
-                let used = sign / most;
-                rooms.push(Room::straight(Limit::Torque(joint), torque.mapped(1.0, -used)));
-                rooms.push(Room::straight(Limit::Speed(joint), torque.mapped(1.0 - rate, -slowed * used)));
-            }
+            let mut push = |limit, most, used| {
+                let height = Affine::constant(most, shares);
+                rooms.push(Room { limit, height, tangential: smallvec![torque.mapped(0.0, used)] });
+            };
+            push(Limit::Torque(joint), 1.0, 1.0 / most);
+            push(Limit::Speed(joint), 1.0 - rate, slowed / most);
         }
         rooms
     }
@@ -99,15 +110,12 @@ impl Limits<'_> {
     /// Vertical part above `least` and friction of every foot, in `unit`.
     fn feet(&self, feet: &[usize], posture: &Posture, shares: &Shares, unit: f64, least: f64) -> Vec<Room> {
         let up = posture.up();
-        let mut rooms = Vec::new();
+        let mut rooms = Vec::with_capacity(2 * feet.len());
         for (k, leg) in feet.iter().enumerate() {
-            let along = |direction: [f64; 3]| {
-                let mut weights = DVector::zeros(shares.nearest.len());
-                (0..3).for_each(|i| weights[3 * k + i] = direction[i] / unit);
-                Affine::of(&weights, shares)
-            };
+            let along = |direction: [f64; 3]| Affine::of(&direction.map(|x| x / unit), 3 * k, shares);
             let vertical = along(up);
-            rooms.push(Room::straight(Limit::Vertical(*leg), vertical.mapped(-least, 1.0)));
+            let height = vertical.mapped(-least, 1.0);
+            rooms.push(Room { limit: Limit::Vertical(*leg), height, tangential: SmallVec::new() });
             // The part of each axis of the platform that is tangential to the ground.
             let tangential = (0..3).map(|i| along([0, 1, 2].map(|j| f64::from(i == j) - up[i] * up[j])));
             rooms.push(Room {
@@ -128,11 +136,5 @@ impl Limits<'_> {
             Limit::Torque(joint) => format!("torque of {}", w.joints[joint].name),
             Limit::Speed(joint) => format!("torque–speed of {}", w.joints[joint].name),
         }
-    }
-}
-
-impl Room {
-    fn straight(limit: Limit, height: Affine) -> Room {
-        Room { limit, height, tangential: Vec::new() }
     }
 }

@@ -1,5 +1,6 @@
 //! The whole robot in the motion of a gait.
 
+use crate::friction::Friction;
 use crate::walk::{Moment, Point};
 use piaffe_model::whole::Whole;
 use piaffe_model::{Description, Gait, Rotation};
@@ -12,6 +13,8 @@ pub struct Legs<'a> {
     pub joints: Vec<usize>,
     /// Of each real leg the virtual one.
     pub legs: Vec<usize>,
+    /// Of each joint of the whole robot its part of what the virtual leg's has to overcome.
+    pub friction: Vec<Option<Friction>>,
 }
 
 /// The whole robot at one instant. Axes of a [`Whole`]: speeds u and their derivatives in those of the platform.
@@ -41,7 +44,10 @@ impl<'a> Legs<'a> {
                 w.legs[real].joints.clone().zip(virtual_leg.first_joint..).for_each(|(j, of)| joints[j] = of);
             }
         }
-        Some(Legs { whole, description, joints, legs })
+        let of_virtual = Friction::all(description);
+        let friction =
+            joints.iter().map(|j| of_virtual[*j].map(|friction| friction.shared(sharing(description, *j)))).collect();
+        Some(Legs { whole, description, joints, legs, friction })
     }
 
     /// The real legs of a virtual one.
@@ -51,8 +57,7 @@ impl<'a> Legs<'a> {
 
     /// How many legs share what the virtual leg of a real joint does.
     pub fn sharing(&self, joint: usize) -> f64 {
-        let d = self.description;
-        d.legs[usize::from(self.joints[joint] >= d.legs[1].first_joint)].members.len() as f64
+        sharing(self.description, self.joints[joint])
     }
 
     /// The robot's weight, N.
@@ -81,13 +86,14 @@ impl<'a> Legs<'a> {
 
     /// u, or its derivative, from the motion of the platform's mass centre in world axes and that of q.
     pub fn speeds(&self, axes: &[Point; 3], platform: Point, q: &[f64]) -> Vec<f64> {
-        let mut u = inside(axes, platform).to_vec();
-        u.extend([0.0; 3]);
+        let mut turning = [0.0; 3];
         match self.description.rotation {
             Rotation::None => {}
-            Rotation::Pitch => u[5] = q[self.description.joints()],
-            Rotation::Roll => u[3] = q[self.description.joints()],
+            Rotation::Pitch => turning[2] = q[self.description.joints()],
+            Rotation::Roll => turning[0] = q[self.description.joints()],
         }
+        let mut u = Vec::with_capacity(6 + self.joints.len());
+        u.extend(inside(axes, platform).into_iter().chain(turning));
         u.extend(self.joints.iter().map(|j| q[*j]));
         u
     }
@@ -135,6 +141,11 @@ impl Posture {
         let w = 0.5 * (1.0 + r(0, 0) + r(1, 1) + r(2, 2)).max(0.0).sqrt();
         [w, (r(2, 1) - r(1, 2)) / (4.0 * w), (r(0, 2) - r(2, 0)) / (4.0 * w), (r(1, 0) - r(0, 1)) / (4.0 * w)]
     }
+}
+
+/// How many legs share what a joint of a virtual leg does.
+fn sharing(d: &Description, joint: usize) -> f64 {
+    d.legs[usize::from(joint >= d.legs[1].first_joint)].members.len() as f64
 }
 
 fn inside(axes: &[Point; 3], v: Point) -> Point {

@@ -2,13 +2,15 @@
 //! f is the criterion per metre but for a factor, which the speed is part of and no other number.
 //!
 //! Numbers of the robot change the impacts, with them the velocities and the momentum at the beginning of each phase, the parabola of a
-//! flight, and β along it. The end of a phase is part of Θ. A row of L at a dip between nodes is the quartic through the nodes, as in the
+//! flight, and (β, σ) along it (`path`). The end of a phase is part of Θ. A row of L at a dip between nodes is the quartic through the nodes, as in the
 //! program; the dip's motion does not matter (envelope theorem). Joints at rest do not stay so when numbers change: the criterion's
 //! subgradient there is part of L.
 
+use super::path::{Rates, follow};
 use crate::constraints::{ImpactConstraints, Limits, path_constraints_of};
 use crate::cycle::{Equation, Place};
 use crate::instant::Quantities;
+use crate::lgl::NODES;
 use crate::optimality::Linearized;
 use crate::swing::{Of, Swing, swings};
 use num_traits::Zero;
@@ -17,15 +19,15 @@ use piaffe_model::{Description, Lever, Mode, UP};
 use piaffe_number::{Dual, Scalar};
 use piaffe_verify::contact::Contact;
 use piaffe_verify::impact::{Before, Impact, impact_of};
-use piaffe_verify::instants::State;
+use piaffe_verify::instants::{Instants, State};
 use piaffe_verify::multibody::Multibody;
 use piaffe_verify::numbers::Numbers;
-use piaffe_verify::phase::Phase;
 
 /// Parameters that are taken together.
-pub const LANES: usize = 8;
+pub const LANES: usize = 14;
 
-type Number = Dual<f64, LANES>;
+/// With derivatives in the parameters, then in β and β̇ of an instant.
+type Number = Dual<f64, { LANES + 2 }>;
 
 /// The Lagrangian of an optimum as a function of parameters.
 pub struct Slopes<'a> {
@@ -92,10 +94,9 @@ impl<'a> Slopes<'a> {
 
         let units = self.linearized.cycle.units();
         let mut lagrangian = Number::zero();
-        let mut travel = Number::zero();
         for (k, end) in ends.iter().enumerate() {
             let before = (k + d.phases.len() - 1) % d.phases.len();
-            lagrangian += self.phase(&numbers, &limits, k, ends[before].rates(d), &mut travel)?;
+            lagrangian += self.phase(&numbers, &limits, k, ends[before].rates(d))?;
             if let (End::Lands(landing), Some(impact)) =
                 (end, ImpactConstraints::with(d, d.transition(k), limits.friction))
             {
@@ -114,9 +115,8 @@ impl<'a> Slopes<'a> {
             let nu = m.bounds[(k + 1) * own - 1];
             lagrangian += limits.durations[k][usize::from(nu < 0.0)].scale(nu);
         }
-        lagrangian -= travel.scale(self.speed_multiplier() / units.length);
         let criterion = self.linearized.cycle.criterion_per_objective();
-        Some(lagrangian.d.map(|slope| criterion * slope))
+        Some(parameters(&lagrangian).map(|slope| criterion * slope))
     }
 
     /// That of an equation.
@@ -165,15 +165,8 @@ impl<'a> Slopes<'a> {
         Some(End::Lands(Box::new(Landing { impact, height })))
     }
 
-    /// Its part of L, but for how it ends; `rates` are those with which the phase before ends. Adds to the travel.
-    fn phase(
-        &self,
-        numbers: &Numbers<Number>,
-        limits: &Limits<Number>,
-        k: usize,
-        rates: &[Number],
-        travel: &mut Number,
-    ) -> Option<Number> {
+    /// Its part of L, but for how it ends; `rates` are those with which the phase before ends.
+    fn phase(&self, numbers: &Numbers<Number>, limits: &Limits<Number>, k: usize, rates: &[Number]) -> Option<Number> {
         let (d, cycle, m) = (self.d, &self.linearized.cycle, &self.linearized.multipliers);
         let mut course: Course<Number> = self.motion.phases[k].cast();
         let rate = |index: usize| {
@@ -181,18 +174,10 @@ impl<'a> Slopes<'a> {
             rates[from].scale(sign)
         };
         course.qd_initial = (0..d.prescribed()).map(|j| rate(d.prescribed_index(j))).collect();
-        course.betad_initial = rate(d.unactuated);
+        let betad_initial = rate(d.unactuated);
         let duration = self.motion.phases[k].duration;
         let (mode, swings) = (cycle.mode(k), swings(d, k));
-        let mut phase =
-            Phase::with(d, numbers.clone(), &course, Contact::of(d, numbers, &self.phases(), k), k + 1).ok()?;
-
-        // β and σ at the end: these numbers change σ(q, q̇) of the wanted end and of the motion's alike.
-        let [beta, betad] = phase.beta_end();
-        let by_beta = self.momentum_at_end(k);
-        let mut lagrangian = -beta.scale(self.multiplier(Equation::ClosureOfBeta(k)));
-        lagrangian -= (beta.scale(by_beta[0]) + betad.scale(by_beta[1]))
-            .scale(self.multiplier(Equation::ClosureOfSigma(k)) / cycle.units().angular_momentum());
+        let mut instants = Instants::new(d, numbers.clone(), &course, Contact::of(d, numbers, &self.phases(), k));
 
         // What is weighted at an instant: quantities of the criterion, constraints.
         let last = cycle.last_node(k);
@@ -212,15 +197,29 @@ impl<'a> Slopes<'a> {
                     .for_each(|(node, part)| rows[node].push((constraint, multiplier * part)));
             }
         }
-        for (joint, by) in cycle.objective_by_coulomb(k) {
-            lagrangian += numbers.joints[joint].coulomb.scale(by);
-        }
         let durations: Vec<f64> = self.motion.durations().collect();
         let constraints = path_constraints_of(d, limits, k);
         let mut state = State::new(d);
+        // By instants, each with β and β̇ of its own.
+        let (mut parts, mut rates) = (Vec::with_capacity(last + 1), Vec::with_capacity(last + 1));
+        let mut initial = [0.0; LANES];
         for (node, (weights, rows)) in weights.iter().zip(&rows).enumerate() {
-            let share = cycle.instant(k, node);
-            phase.at(share * duration, &mut state).ok()?;
+            let (share, [q, qd, _]) = (cycle.instant(k, node), cycle.sample(k, node).state);
+            let beta = Number::variable(q[d.unactuated], LANES);
+            let betad = Number::variable(qd[d.unactuated], LANES + 1);
+            instants.at(Number::constant(share * duration), [beta, betad], &mut state)?;
+            let [momentum, moment] = instants.momentum();
+            // β̇ where σ is as it is.
+            let by_betad = momentum.d[LANES + 1];
+            rates.push(Rates {
+                by_state: [[-momentum.d[LANES] / by_betad, 1.0 / by_betad], [moment.d[LANES], 0.0]],
+                direct: [parameters(&momentum).map(|by| -by / by_betad), parameters(&moment)],
+            });
+            if node == 0 {
+                initial = parameters(&momentum);
+                initial.iter_mut().zip(betad_initial.d).for_each(|(sigma, betad)| *sigma += by_betad * betad);
+            }
+            let mut lagrangian = Number::zero();
             let y = quantities(d, mode, &swings, &state, share, &durations);
             for (quantity, weight) in weights {
                 lagrangian += y[*quantity].scale(*weight);
@@ -232,27 +231,38 @@ impl<'a> Slopes<'a> {
             for (constraint, multiplier) in rows {
                 lagrangian -= constraints[*constraint].value(&y).scale(*multiplier);
             }
+            let travel = state.platform.x.scale(self.speed_multiplier() / cycle.units().length);
             if node == 0 {
-                *travel -= state.platform.x;
+                lagrangian += travel;
             } else if node == last {
-                *travel += state.platform.x;
+                lagrangian -= travel;
+                // These numbers change σ(q, q̇) of the wanted end and of the motion's alike: what is left is by β and β̇.
+                lagrangian -= beta.scale(self.multiplier(Equation::ClosureOfBeta(k)));
+                let of_sigma = self.multiplier(Equation::ClosureOfSigma(k)) / cycle.units().angular_momentum();
+                (LANES..LANES + 2).for_each(|by| lagrangian.d[by] -= of_sigma * momentum.d[by]);
             }
+            parts.push(lagrangian);
+        }
+        let length = duration / (last / (NODES - 1)) as f64;
+        let changes = follow(&rates, length, [[0.0; LANES], initial])?;
+        let mut lagrangian = Number::zero();
+        for (part, (rates, change)) in parts.iter().zip(rates.iter().zip(&changes)) {
+            lagrangian += *part;
+            let ([beta, _], [betad, _]) = (change, rates.changes(change));
+            for lane in 0..LANES {
+                lagrangian.d[lane] += part.d[LANES] * beta[lane] + part.d[LANES + 1] * betad[lane];
+            }
+        }
+        for (joint, by) in cycle.objective_by_coulomb(k) {
+            lagrangian += numbers.joints[joint].coulomb.scale(by);
         }
         Some(lagrangian)
     }
+}
 
-    /// ∂σ/∂β and ∂σ/∂β̇ at the end of phase `k`.
-    fn momentum_at_end(&self, k: usize) -> [f64; 2] {
-        let (d, h) = (self.d, &self.motion.phases[k]);
-        let nq = d.orientations();
-        let mode = self.linearized.cycle.mode(k);
-        let shape = &d.shape(mode).momentum;
-        let mut momentum = shape.zeros();
-        let (q, qd) = (d.complete(&h.q_final, h.beta_final), d.complete(&h.qd_final, h.betad_final));
-        self.linearized.cycle.gait().momentum(mode, &q, &qd, &mut momentum);
-        let by_w = shape.sigma_w.of(&momentum);
-        [by_w[d.unactuated], by_w[nq + d.unactuated]]
-    }
+/// Derivatives in the parameters alone.
+fn parameters(number: &Number) -> [f64; LANES] {
+    std::array::from_fn(|lane| number.d[lane])
 }
 
 /// The quantities of an instant, in the order of [`Quantities`].

@@ -2,9 +2,10 @@
 //!
 //! At an optimum the slope of the least criterion C* in a parameter p is that of the Lagrangian, with the variables Θ and the
 //! multipliers as they are (envelope theorem): dC*/dp = ∂L/∂p. The multipliers are [`optimality`](crate::optimality)'s;
-//! ∂L/∂p comes from the verifier's physics in dual numbers, with β integrated anew (`lagrangian.rs`).
+//! ∂L/∂p comes from the verifier's physics in dual numbers (`lagrangian.rs`), with (β, σ) as the program has them (`path.rs`).
 
 mod lagrangian;
+mod path;
 
 use crate::constraints::sharing::applies;
 use crate::optimality::{KKT_RESIDUAL, Linearized};

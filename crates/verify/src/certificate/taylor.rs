@@ -140,13 +140,16 @@ impl<const N: usize> Taylor<N> {
         }
         let mut product = Taylor::zero();
         product.degree = (self.degree + other.degree).min(N - 1);
-        let mut beyond = 0.0;
+        // What the i-th coefficient multiplies is too high from the other's (N − i)-th on.
+        let (mut beyond, mut cut) = (0.0, 0.0);
         for (i, a) in self.coefficients().iter().enumerate() {
-            let (within, cut) = other.coefficients().split_at((other.degree + 1).min(N - i));
-            for (c, b) in product.c[i..].iter_mut().zip(within) {
+            for (c, b) in product.c[i..].iter_mut().zip(other.coefficients()) {
                 *c += a * b;
             }
-            beyond += cut.iter().map(|b| (a * b).abs()).sum::<f64>();
+            if i > 0 {
+                cut += other.c[N - i].abs();
+            }
+            beyond += a.abs() * cut;
         }
         let (of_self, of_other) = (self.norm(), other.norm());
         // A coefficient sums up to N products.

@@ -2,9 +2,9 @@
 
 use super::{Best, SLACK, weighed};
 use crate::four_legs::limits::Room;
+use crate::four_legs::shares::Squeeze;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
-use nalgebra::DVector;
 use piaffe_sqp::qp::interior::settings;
 
 const BISECTIONS: usize = 60;
@@ -12,19 +12,20 @@ const BISECTIONS: usize = 60;
 /// See [`best`](super::best). `None` if the cone program was not solved.
 pub fn best(rooms: &[Room], squeezes: usize) -> Option<Best> {
     let solution = maximize(rooms, squeezes)?;
-    let margin = |s: &DVector<f64>| rooms.iter().map(|room| room.margin(s)).fold(f64::INFINITY, f64::min);
+    let margin = |s: &[f64]| rooms.iter().map(|room| room.margin(s)).fold(f64::INFINITY, f64::min);
     let most = margin(&solution.s);
     // The margin is concave on the way from 0 to s.
+    let on_the_way = |part: f64| solution.s.iter().map(|s| part * s).collect::<Squeeze>();
     let (mut low, mut high) = (0.0, 1.0);
-    if margin(&(&solution.s * low)) >= most - SLACK {
+    if margin(&on_the_way(low)) >= most - SLACK {
         high = low;
     } else {
         for _ in 0..BISECTIONS {
             let middle = 0.5 * (low + high);
-            if margin(&(&solution.s * middle)) >= most - SLACK { high = middle } else { low = middle }
+            if margin(&on_the_way(middle)) >= most - SLACK { high = middle } else { low = middle }
         }
     }
-    let s = &solution.s * high;
+    let s = on_the_way(high);
     Some(Best { margin: margin(&s), s, binding: solution.binding })
 }
 
@@ -57,5 +58,5 @@ fn maximize(rooms: &[Room], squeezes: usize) -> Option<Best> {
     // The multiplier of m's column: those of the heights sum to 1.
     let binding = weighed(of.into_iter().map(|(limit, row)| (limit, solver.solution.z[row])));
     let x = &solver.solution.x;
-    Some(Best { s: DVector::from_column_slice(&x[..squeezes]), margin: x[squeezes], binding })
+    Some(Best { s: x[..squeezes].into(), margin: x[squeezes], binding })
 }

@@ -7,7 +7,7 @@
 
 use super::{Best, SLACK, weighed};
 use crate::four_legs::limits::{Limit, Room};
-use nalgebra::DVector;
+use smallvec::smallvec;
 
 /// Exchanges and steps of Newton's method after which something is wrong with the numbers: it takes a handful.
 const MOST: usize = 200;
@@ -54,11 +54,7 @@ impl Line {
     /// The share with most room, as near to 0 as [`SLACK`] allows.
     pub fn best(&self) -> Best {
         let s = self.nearest_with_room(0.0, f64::INFINITY);
-        Best {
-            s: DVector::from_element(1, s),
-            margin: self.curves.lowest(s).1,
-            binding: weighed(self.curves.weights(&self.top)),
-        }
+        Best { s: smallvec![s], margin: self.curves.lowest(s).1, binding: weighed(self.curves.weights(&self.top)) }
     }
 
     /// The share nearest to `wanted` that leaves at least this room, or where none does, the most.
@@ -209,6 +205,9 @@ impl Curve {
     }
 
     fn norm(&self, s: f64) -> f64 {
+        if self.k == 0.0 {
+            return self.depth;
+        }
         let across = self.k * (s - self.axis);
         (across * across + self.depth * self.depth).sqrt()
     }

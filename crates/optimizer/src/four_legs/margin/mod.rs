@@ -7,8 +7,9 @@ pub mod cone;
 pub mod line;
 
 use super::limits::{Limit, Room};
+use super::shares::Squeeze;
 use line::Line;
-use nalgebra::DVector;
+use smallvec::smallvec;
 
 /// Room that is given up for a share nearer to the equal one.
 pub const SLACK: f64 = 1e-9;
@@ -18,7 +19,7 @@ const IN_THE_WAY: f64 = 1e-3;
 /// The share with the most room.
 #[derive(Clone, Debug)]
 pub struct Best {
-    pub s: DVector<f64>,
+    pub s: Squeeze,
     /// The least margin of all limits.
     pub margin: f64,
     /// The limits in the way of more room with their weights, which sum to 1; heaviest first.
@@ -51,9 +52,9 @@ impl Choice {
     }
 
     /// The share nearest to `wanted` of those that leave this room; where none do, or more than two feet stand, the best.
-    pub fn nearest(&self, wanted: f64, room: f64) -> DVector<f64> {
+    pub fn nearest(&self, wanted: f64, room: f64) -> Squeeze {
         match &self.line {
-            Some(line) => DVector::from_element(1, line.nearest_with_room(wanted, room)),
+            Some(line) => smallvec![line.nearest_with_room(wanted, room)],
             None => self.best.s.clone(),
         }
     }
@@ -61,7 +62,7 @@ impl Choice {
 
 /// Where there is no choice.
 fn settled(rooms: &[Room]) -> Best {
-    let s = DVector::zeros(0);
+    let s = Squeeze::new();
     let margins = rooms.iter().map(|room| (room.limit, room.margin(&s)));
     let least = margins.min_by(|a, b| a.1.total_cmp(&b.1));
     let binding = least.map(|(limit, _)| (limit, 1.0)).into_iter().collect();
