@@ -181,7 +181,9 @@ fn folds_are_parts_of_the_criterion() {
         let name = gait.description().key;
         assert!(folds.iter().flatten().all(|c| *c > 0.0), "{name}");
         assert!(sum > 0.2 * objective && sum <= (1.0 + 1e-12) * objective, "{name}: {sum} of {objective}");
-        for (i, fold) in folds.iter().enumerate().filter(|(i, fold)| i % 7 == 0 && fold.is_some()) {
+        // Differences see a fold that is nearer than their step.
+        let far = folds.iter().enumerate().filter(|(i, fold)| i % 23 == 0 && fold.is_some_and(|c| c > 1e-5));
+        for (i, fold) in far {
             let mut gradient = vec![0.0; n];
             cycle.evaluate(&theta, &mut values).unwrap();
             cycle.linearize(&theta).unwrap();

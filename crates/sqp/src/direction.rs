@@ -17,8 +17,8 @@ const FAIR: f64 = 0.3;
 /// If the best relief is a smaller share of the violation than this, the objective has to wait.
 const HOPELESS: f64 = 0.1;
 
-/// Changes of the objective that are rounding, relative to one and to its size.
-const ROUNDING: f64 = 1e-12;
+/// Rises of the objective that a subproblem solved to its tolerance may promise, relative to one and to its size.
+const ROUNDING: f64 = 1e-9;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Direction {

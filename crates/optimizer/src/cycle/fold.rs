@@ -45,6 +45,9 @@ impl Cycle<'_> {
         let nodes = || (element * (NODES - 1)..).zip(weights);
         let power = |node: usize| drive.power(phase.linearized(node), signs.side);
         let value = nodes().map(|(node, weight)| scale * weight * power(node)).sum::<f64>();
+        if value <= 0.0 {
+            return None;
+        }
         let mut local = phase.no_parameters();
         local[phase.layout.duration()] = value / phase.duration();
         for (node, weight) in nodes() {
