@@ -142,13 +142,13 @@ impl<P: Problem> Run<'_, '_, P> {
     /// The step that reduces the violation alone: a proximal ℓ1 model of it.
     fn towards_feasibility(&mut self) -> Result<Direction, Trouble> {
         self.set_bounds();
-        self.augmented = true;
+        self.augmented = false;
         self.subproblem.qp.gradient.fill(0.0);
         self.curvature.copy_from_slice(&self.violation_model.b);
         self.subproblem.qp.hessian.copy_from_slice(&self.curvature);
         if self.exact && !self.distrust && self.violation_multipliers && self.violation_hessian() {
             let (model, qp) = (&self.violation_model.b, &mut self.subproblem.qp);
-            self.convexifier.convexify(&mut self.curvature, qp, model, true);
+            self.convexifier.convexify(&mut self.curvature, qp, model, false);
         }
         self.subproblem.cap(1.0, false);
         self.subproblem.solve(&self.view, &self.point)?;
