@@ -39,7 +39,7 @@ impl Cycle<'_> {
         })?;
         let (drive, element) = (i / 2 / phase.mesh.elements, i / 2 % phase.mesh.elements);
         let signs = phase.cost.signs.iter().find(|signs| (signs.drive, signs.element) == (drive, element))?;
-        let weights = part(signs, &phase.mesh.lobatto.weights, if i % 2 == 0 { 1.0 } else { -1.0 })?;
+        let weights = part(signs, &phase.mesh.lobatto.weights, [1.0, -1.0][i % 2])?;
         let drive = &phase.cost.drives[drive];
         let scale = phase.duration() * self.per_work() / phase.mesh.elements as f64;
         let nodes = || (element * (NODES - 1)..).zip(weights);
