@@ -26,20 +26,25 @@ struct Kind {
 fn program(seed: u64, n: usize, rows: usize, equalities: usize, kind: Kind) -> Quadratic {
     let mut random = Random::new(seed);
     let mut qp = Quadratic::new(n, rows);
+    // Orthogonal axes, each perpendicular to those before it (twice, against rounding), and a curvature along each.
+    let mut axes: Vec<Vec<f64>> = Vec::new();
     for k in 0..n {
-        let v = random.vector(n);
-        let weight = kind.condition.powf(-(k as f64) / n as f64);
-        for i in 0..n {
-            for j in 0..n {
-                qp.hessian[i * n + j] += weight * v[i] * v[j];
+        let mut axis = random.vector(n);
+        for _ in 0..2 {
+            for other in &axes {
+                let along = dot(&axis, other);
+                axis.iter_mut().zip(other).for_each(|(a, o)| *a -= along * o);
             }
         }
-    }
-    for i in 0..n {
-        qp.hessian[i * n + i] += 1e-3 / kind.condition;
-        for j in 0..i {
-            qp.hessian[j * n + i] = qp.hessian[i * n + j];
+        let length = dot(&axis, &axis).sqrt();
+        axis.iter_mut().for_each(|a| *a /= length);
+        let curvature = kind.condition.powf(-(k as f64) / (n.max(2) - 1) as f64);
+        for i in 0..n {
+            for j in 0..n {
+                qp.hessian[i * n + j] += curvature * axis[i] * axis[j];
+            }
         }
+        axes.push(axis);
     }
     qp.gradient = random.vector(n).iter().map(|g| 3.0 * g).collect();
     let inside = random.vector(n);
@@ -70,22 +75,22 @@ fn program(seed: u64, n: usize, rows: usize, equalities: usize, kind: Kind) -> Q
     qp
 }
 
-fn value(qp: &Quadratic, d: &[f64]) -> f64 {
-    let n = qp.n;
-    (0..n).map(|i| d[i] * (qp.gradient[i] + 0.5 * dot(&qp.hessian[i * n..(i + 1) * n], d))).sum()
-}
-
-/// The active-set method must solve it, to tighter conditions than Clarabel, and agree with it where d is well determined.
-fn compare(qp: &Quadratic) -> Result<(), TestCaseError> {
+/// The active-set method must solve it, to tighter conditions than Clarabel, and agree with it where d is well determined. Without
+/// hard rows Clarabel's point is allowed, so no better than the optimum.
+fn compare(qp: &Quadratic, kind: Kind) -> Result<(), TestCaseError> {
     let mut solver = ActiveSet::new(qp.n, qp.len());
     let ours = solver.solve(qp);
     let theirs = interior::solve(qp);
     match (ours, theirs) {
         (Ok(ours), Ok(theirs)) => {
             prop_assert!(qp.residual(ours, &mut Vec::new()) <= 1e-9);
-            let gap = (value(qp, &ours.d) - value(qp, &theirs.d)).abs();
+            let (value, bound) = (qp.value(&ours.d), qp.value(&theirs.d));
+            let gap = (value - bound).abs();
             let apart = ours.d.iter().zip(&theirs.d).fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
-            let (reach, size) = (ours.d.iter().fold(1.0, |m: f64, d| m.max(d.abs())), 1.0 + value(qp, &ours.d).abs());
+            let (reach, size) = (ours.d.iter().fold(1.0, |m: f64, d| m.max(d.abs())), 1.0 + value.abs());
+            if let Some(price) = kind.price {
+                prop_assert!(value < bound + 1e-9 * (size + price), "{value:e} is more than {bound:e}");
+            }
             prop_assert!(
                 apart < 1e-4 * reach || gap < 1e-6 * size,
                 "apart {apart:e} of {reach:e}, gap {gap:e} of {size:e}"
@@ -103,31 +108,31 @@ proptest! {
     #[test]
     fn agrees_with_clarabel(seed: u64, n in 1usize..20, rows in 0usize..60, e in 0usize..4) {
         let kind = Kind { condition: 1e2, ..Kind::default() };
-        compare(&program(seed, n, rows, e.min(n / 3), kind))?;
+        compare(&program(seed, n, rows, e.min(n / 3), kind), kind)?;
     }
 
     #[test]
     fn agrees_with_clarabel_on_elastic_programs(seed: u64, n in 1usize..20, rows in 1usize..60, e in 0usize..8, log in -1.0..3.0) {
         let kind = Kind { price: Some(10f64.powf(log)), contradictory: true, condition: 1e2, ..Kind::default() };
-        compare(&program(seed, n, rows, e, kind))?;
+        compare(&program(seed, n, rows, e, kind), kind)?;
     }
 
     #[test]
     fn agrees_with_clarabel_on_repeated_rows(seed: u64, n in 1usize..16, rows in 1usize..80, log in -12.0..-3.0) {
         let kind = Kind { repeated: Some(10f64.powf(log)), condition: 1e2, ..Kind::default() };
-        compare(&program(seed, n, rows, 0, kind))?;
+        compare(&program(seed, n, rows, 0, kind), kind)?;
     }
 
     #[test]
     fn agrees_with_clarabel_on_repeated_elastic_rows(seed: u64, n in 1usize..16, rows in 1usize..80, e in 0usize..6) {
         let kind = Kind { repeated: Some(0.0), price: Some(10.0), contradictory: true, condition: 1e2 };
-        compare(&program(seed, n, rows, e, kind))?;
+        compare(&program(seed, n, rows, e, kind), kind)?;
     }
 
     #[test]
     fn survives_bad_conditioning(seed: u64, n in 2usize..20, rows in 0usize..60) {
         let kind = Kind { condition: 1e6, ..Kind::default() };
-        compare(&program(seed, n, rows, n / 4, kind))?;
+        compare(&program(seed, n, rows, n / 4, kind), kind)?;
     }
 
     /// Rows that come later, or change, lead to the solution of the whole.
@@ -148,6 +153,13 @@ proptest! {
         let restarted = solver.solve(&whole).cloned();
         prop_assert_eq!(scratch.is_ok(), restarted.is_ok());
     }
+}
+
+/// Rows of high prices: Clarabel's point is 3e-4 off here, and costs more.
+#[test]
+fn of_two_answers_the_cheaper_one_is_right() {
+    let kind = Kind { price: Some(791.058), contradictory: true, condition: 1e2, ..Kind::default() };
+    compare(&program(14_520_122_465_574_976_311, 9, 31, 0, kind), kind).unwrap();
 }
 
 #[test]

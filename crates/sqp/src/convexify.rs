@@ -53,6 +53,11 @@ impl Convexifier {
         }
     }
 
+    /// Whether rows were expected to stay active in the last stand-in.
+    pub(super) fn is_augmented(&self) -> bool {
+        self.known == Some(true)
+    }
+
     /// There is another W.
     pub(super) fn forget(&mut self) {
         self.known = None;

@@ -118,7 +118,6 @@ impl<P: Problem> Run<'_, '_, P> {
     /// Solves the subproblem of the optimality phase at the given price of a violation. `augment`: see [`super::convexify`].
     fn plain_step(&mut self, augment: bool, price: f64) -> Result<(), Trouble> {
         self.set_bounds();
-        self.augmented = augment;
         self.subproblem.qp.gradient.copy_from_slice(&self.gradient);
         let newton = self.exact && !self.distrust && self.phase == Phase::Optimality;
         if newton && !self.hessian_known {
@@ -142,7 +141,6 @@ impl<P: Problem> Run<'_, '_, P> {
     /// The step that reduces the violation alone: a proximal ℓ1 model of it.
     fn towards_feasibility(&mut self) -> Result<Direction, Trouble> {
         self.set_bounds();
-        self.augmented = false;
         self.subproblem.qp.gradient.fill(0.0);
         self.curvature.copy_from_slice(&self.violation_model.b);
         self.subproblem.qp.hessian.copy_from_slice(&self.curvature);
@@ -183,7 +181,8 @@ impl<P: Problem> Run<'_, '_, P> {
         let equalities = self.lambda.iter().zip(&values.equalities).map(|(m, c)| (m * c).abs());
         let inequalities = self.mu.iter().zip(&values.inequalities).map(|(m, c)| m * (-c).max(0.0));
         let worth = equalities.chain(inequalities).sum::<f64>() + ROUNDING * values.objective.abs().max(1.0);
-        self.augmented && self.promise.slope + 0.5 * self.promise.curvature > 2.0 * worth
+        let augmented = self.exact && !self.distrust && self.convexifier.is_augmented();
+        augmented && self.promise.slope + 0.5 * self.promise.curvature > 2.0 * worth
     }
 
     fn set_bounds(&mut self) {

@@ -63,8 +63,6 @@ pub(super) struct Run<'a, 'p, P: Problem> {
     pub(super) violation_multipliers: bool,
     pub(super) zeros: (Vec<f64>, Vec<f64>),
     pub(super) convexifier: Convexifier,
-    /// The last subproblem's Hessian was augmented.
-    pub(super) augmented: bool,
     pub(super) curvature: Vec<f64>,
 
     /// ∇L at the former iterate with the present multipliers; pending until ∇L is known at the new one.
@@ -112,7 +110,6 @@ impl<'a, 'p, P: Problem> Run<'a, 'p, P> {
             violation_multipliers: false,
             zeros: (vec![0.0; equalities], vec![0.0; inequalities]),
             convexifier: Convexifier::new(n),
-            augmented: false,
             curvature: vec![0.0; n * n],
             former: zeros(),
             s: zeros(),

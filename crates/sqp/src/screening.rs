@@ -207,10 +207,12 @@ impl Subproblem {
     pub(super) fn cap(&mut self, limit: f64, objective: bool) {
         self.limit = limit;
         self.folds.counted = objective;
+        for (own, norm) in self.qp.limits.iter_mut().zip(&self.qp.norms) {
+            *own = limit * norm;
+        }
         let price = self.folds.price();
-        let ids = (0..self.lambda.len()).map(|_| None).chain(self.ids.iter().map(Some));
-        for ((own, norm), id) in self.qp.limits.iter_mut().zip(&self.qp.norms).zip(ids) {
-            *own = norm * if matches!(id, Some(Id::Fold(_))) { price } else { limit };
+        for (row, _) in (self.lambda.len()..).zip(&self.ids).filter(|(_, id)| matches!(id, Id::Fold(_))) {
+            self.qp.limits[row] = price * self.qp.norms[row];
         }
     }
 

@@ -5,12 +5,11 @@ mod energy;
 mod sides;
 mod torque;
 
-pub use drive::Drive;
+pub use drive::{Drive, Partials};
 
 use crate::flow::Mesh;
 use crate::instant::Instants;
 use crate::lgl::NODES;
-use drive::Partials;
 use piaffe_model::motion::Criterion;
 use piaffe_model::{Description, Mode};
 

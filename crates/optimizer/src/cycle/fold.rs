@@ -11,7 +11,6 @@ use crate::cost::Signs;
 use crate::lgl::NODES;
 use piaffe_model::motion::Criterion;
 use piaffe_sqp::axpy;
-use smallvec::SmallVec;
 
 impl Phase {
     /// P⁺ and P⁻ of each joint and element.
@@ -51,11 +50,8 @@ impl Cycle<'_> {
         let mut local = phase.no_parameters();
         local[phase.layout.duration()] = value / phase.duration();
         for (node, weight) in nodes() {
-            let mut state = SmallVec::<[f64; 32]>::from_elem(0.0, phase.instants.width());
-            for (quantity, partial) in drive.power_partials(phase.linearized(node), signs.side) {
-                axpy(scale * weight * partial, phase.instants.gradient(node, quantity), &mut state);
-            }
-            phase.pull(self.description(), node, &state, &mut local);
+            let partials = drive.power_partials(phase.linearized(node), signs.side);
+            phase.add_partials(self.description(), node, &partials, scale * weight, &mut local);
         }
         phase.by_theta.pull(&local, 1.0, row);
         axpy(-value / self.duration, &self.duration_gradient, row);

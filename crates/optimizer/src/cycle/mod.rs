@@ -7,8 +7,8 @@
 //! mean speed is the given one.
 //!
 //! `phase` is one phase, `by_theta` how its parameters depend on Θ, `crossing` how it ends, `dip` a constraint between its nodes,
-//! `still` a joint that it holds, `halt` one that just does not turn around, `rows` which equation and which limit is which row,
-//! `problem` the nonlinear program, `hessian` its second derivatives.
+//! `still` a joint that it holds, `halt` one that just does not turn around, `fold` where the criterion will bend, `rows` which equation
+//! and which limit is which row, `problem` the nonlinear program, `hessian` its second derivatives.
 
 mod by_theta;
 mod crossing;

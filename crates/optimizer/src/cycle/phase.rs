@@ -5,7 +5,7 @@ use super::by_theta::ByTheta;
 use super::crossing::Crossing;
 use super::dip::{Dip, Lowest};
 use crate::constraints::{ImpactConstraints, PathConstraint, path_constraints};
-use crate::cost::Integral;
+use crate::cost::{Integral, Partials};
 use crate::flow::{Fall, Flow, Layout, Mesh, Undefined};
 use crate::instant::{Glance, Instants};
 use crate::lgl::NODES;
@@ -301,6 +301,15 @@ impl Phase {
         let mut pulled = self.no_parameters();
         self.instants.chain(d, &self.flow, node).pull(state, &mut pulled);
         axpy(1.0, &pulled, local);
+    }
+
+    /// Adds `scale` times the gradient of what has these partial derivatives in the quantities of a node.
+    pub fn add_partials(&self, d: &Description, node: usize, partials: &Partials, scale: f64, local: &mut [f64]) {
+        let mut state = SmallVec::<[f64; 32]>::from_elem(0.0, self.instants.width());
+        for (quantity, partial) in partials {
+            axpy(scale * partial, self.instants.gradient(node, *quantity), &mut state);
+        }
+        self.pull(d, node, &state, local);
     }
 
     /// Adds `scale` times the gradient of a quantity at a node.

@@ -81,8 +81,7 @@ const AMONG_KINKS: usize = 60;
 /// it is not far to that with kinks.
 const LESS_AND_LESS: [f64; 3] = [0.2, 0.04, 0.008];
 
-/// Largest component of the first step from there, in natural sizes of the variables: kinks are known where they are, and
-/// hardly beyond.
+/// Largest component of the first step from what is nearly an optimum, in natural sizes of the variables.
 const CAUTION: f64 = 0.05;
 
 /// Joints slower than this, in parts of the fastest joint's rate, may be about to come to rest, where the criterion has kinks.

@@ -22,6 +22,8 @@ const INDEPENDENT_GUESS: f64 = 1e-5;
 /// vertex rounding alone violates the rows beyond the n-th.
 const DEPENDENT: f64 = 1e-6;
 const EXCUSED: f64 = 1e-10;
+/// How far a working row is from holding.
+const ROUNDING: f64 = 1e-15;
 /// Violation that counts otherwise.
 const VIOLATED: f64 = 1e-13;
 /// From this many rows on, each look at all of them yields up to `QUEUE` candidates.
@@ -40,8 +42,8 @@ pub struct ActiveSet {
     /// Constraints of the working set, in the order of the factorization. Ids: 0..n lower bounds, n..2n upper, then rows.
     pub(super) working: Vec<usize>,
     pub(super) place: Vec<Place>,
-    /// Constraints whose violation is a matter of rounding.
-    excused: Vec<bool>,
+    /// Violation that is a matter of rounding, of each constraint.
+    excused: Vec<f64>,
     /// Next candidates with their violation when last looked at, the largest last.
     queue: Vec<(f64, usize)>,
     queue_length: usize,
@@ -167,7 +169,7 @@ impl ActiveSet {
             Place::Full => (value, -1.0),
             _ => (-value, 1.0),
         };
-        let tolerance = if self.excused[id] { EXCUSED } else { VIOLATED } * (reach + self.constant(qp, id).abs());
+        let tolerance = self.excused[id] * (reach + self.constant(qp, id).abs());
         (violation > tolerance).then_some((violation, sign))
     }
 
@@ -242,13 +244,13 @@ impl ActiveSet {
         self.queue.clear();
         self.queue_length = if qp.len() < MANY { 1 } else { QUEUE };
         self.excused.clear();
-        self.excused.resize(self.place.len(), false);
+        self.excused.resize(self.place.len(), VIOLATED);
         while let Some((p, sign)) = self.pick(qp) {
             self.project(qp, p);
-            if !self.excused[p] && !self.independent(DEPENDENT) {
+            if self.excused[p] < EXCUSED && !self.independent(DEPENDENT) {
                 // Look again without the rounding that the steps have left in d; the row is picked again only if it is
                 // violated by more than can be excused.
-                self.excused[p] = true;
+                self.excused[p] = EXCUSED;
                 self.stationarity(qp);
                 self.correct(qp);
                 continue;
@@ -309,8 +311,17 @@ impl ActiveSet {
         };
 
         let t = full.min(partial.0).min(own);
-        if !t.is_finite() {
-            return Err(if t.is_nan() { Failure::Inaccurate } else { Failure::Inconsistent });
+        if t.is_nan() {
+            return Err(Failure::Inaccurate);
+        }
+        if t.is_infinite() {
+            // The working rows, so weighted, contradict p: each of them holds but for rounding.
+            let doubt = ACCEPT.min(ROUNDING * self.change.iter().map(|c| c.abs()).sum::<f64>());
+            if self.y[p] != 0.0 || doubt <= self.excused[p] {
+                return Err(Failure::Inconsistent);
+            }
+            self.excused[p] = doubt;
+            return Ok(true);
         }
         if independent {
             self.factor.descend(t, &self.w, &mut self.d);

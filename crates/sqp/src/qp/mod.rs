@@ -15,7 +15,7 @@ mod factor;
 pub mod interior;
 mod working_set;
 
-use super::dense::{axpy, max_abs, multiply, norm};
+use super::dense::{axpy, dot, max_abs, multiply, norm};
 
 /// One quadratic subproblem. Rows are normalized to ‖aᵢ‖₂ = 1 as they come in.
 #[derive(Clone, Debug, Default)]
@@ -164,6 +164,19 @@ impl Quadratic {
         let range = first..first + out.len();
         multiply(&self.rows[range.start * self.n..range.end * self.n], d, out);
         axpy(1.0, &self.constants[range], out);
+    }
+
+    /// What is minimized, at `d`: the quadratic and what elastic rows cost there. Hard rows and bounds are not asked.
+    #[must_use]
+    pub fn value(&self, d: &[f64]) -> f64 {
+        let (mut product, mut rows) = (vec![0.0; self.n], vec![0.0; self.len()]);
+        multiply(&self.hessian, d, &mut product);
+        self.values(0, d, &mut rows);
+        let paid = (0..self.len()).filter(|i| self.limits[*i].is_finite()).map(|i| {
+            let violation = if self.equality[i] { rows[i].abs() } else { (-rows[i]).max(0.0) };
+            self.limits[i] * violation
+        });
+        0.5 * dot(d, &product) + dot(d, &self.gradient) + paid.sum::<f64>()
     }
 
     /// Multiplier of row `i` as it was before the row was normalized.

@@ -7,8 +7,6 @@ use crate::constraints::PathConstraint;
 use crate::cycle::Cycle;
 use crate::cycle::phase::Phase;
 use crate::lgl::NODES;
-use piaffe_sqp::axpy;
-use smallvec::SmallVec;
 
 impl Cycle<'_> {
     /// Second-order terms of all instants of phase `k`, in the local parameters.
@@ -47,17 +45,14 @@ impl Cycle<'_> {
 
     /// Roots of a power, where its magnitude has kinks: they move.
     fn kinks_of_power(&self, p: &Phase, work: &mut PhaseWork) {
-        let (d, width, scale) = (self.description(), p.instants.width(), self.scale_of_cost(p));
+        let (d, scale) = (self.description(), self.scale_of_cost(p));
         let PhaseWork { local, h, .. } = work;
         for kink in &p.cost.kinks {
             local.fill(0.0);
             for (i, shape) in kink.shape.iter().enumerate().take(NODES) {
                 let node = kink.first + i;
-                let mut state = SmallVec::<[f64; 32]>::from_elem(0.0, width);
-                for (quantity, partial) in kink.partials(&p.cost.drives[kink.drive], p.linearized(node)) {
-                    axpy(shape * partial, p.instants.gradient(node, quantity), &mut state);
-                }
-                p.pull(d, node, &state, local);
+                let partials = kink.partials(&p.cost.drives[kink.drive], p.linearized(node));
+                p.add_partials(d, node, &partials, *shape, local);
             }
             square(h, local, kink.weight * scale);
         }
