@@ -79,9 +79,10 @@ fn check(gait: &dyn Gait, criterion: Criterion, seed: u64) {
 
     // The cheap product with a direction agrees with the rows.
     let direction: Vec<f64> = (0..n).map(|_| rng.f64() - 0.5).collect();
-    let mut product = vec![0.0; inequalities.len()];
-    cycle.inequality_directions(&direction, &mut product);
-    for (row, p) in inequalities.iter().zip(&product) {
+    let (mut product, mut beyond) = (vec![0.0; inequalities.len()], vec![0.0; cycle.folds()]);
+    cycle.directions(&direction, &mut product, &mut beyond);
+    let folds = rows(cycle.folds(), &|i, r| cycle.fold_row(i, r));
+    for (row, p) in inequalities.iter().chain(&folds).zip(product.iter().chain(&beyond)) {
         let expected: f64 = row.iter().zip(&direction).map(|(a, b)| a * b).sum();
         assert!((expected - p).abs() <= 1e-9 * (1.0 + expected.abs()), "{name}: directions");
     }
@@ -148,7 +149,6 @@ fn gradients_agree_with_differences_for_every_gait_criterion_and_order() {
     }
 }
 
-/// Gradient of the Lagrangian at `theta` with the given multipliers.
 /// What the power of a joint adds to the criterion in an element, where it keeps its sign there: all such elements of a motion add up to
 /// less than the criterion, and each has the gradient that differences have.
 #[test]
@@ -166,17 +166,10 @@ fn folds_are_parts_of_the_criterion() {
             }
         };
         let n = theta.len();
-        let mut row = vec![0.0; n];
-        let mut at = |theta: &[f64], row: &mut [f64]| -> (f64, Vec<Option<f64>>) {
-            cycle.evaluate(theta, &mut values).unwrap();
-            cycle.linearize(theta).unwrap();
-            let folds = (0..cycle.folds()).map(|i| {
-                row.fill(0.0);
-                cycle.fold(i, row)
-            });
-            (values.objective, folds.collect())
-        };
-        let (objective, folds) = at(&theta, &mut row);
+        cycle.evaluate(&theta, &mut values).unwrap();
+        cycle.linearize(&theta).unwrap();
+        let folds: Vec<Option<f64>> = (0..cycle.folds()).map(|i| cycle.fold(i)).collect();
+        let objective = values.objective;
         let sum: f64 = folds.iter().flatten().sum();
         let name = gait.description().key;
         assert!(folds.iter().flatten().all(|c| *c > 0.0), "{name}");
@@ -187,7 +180,7 @@ fn folds_are_parts_of_the_criterion() {
             let mut gradient = vec![0.0; n];
             cycle.evaluate(&theta, &mut values).unwrap();
             cycle.linearize(&theta).unwrap();
-            cycle.fold(i, &mut gradient);
+            cycle.fold_row(i, &mut gradient);
             for k in 0..n {
                 let h = 1e-6;
                 let [plus, minus] = [h, -h].map(|h| {
@@ -195,7 +188,7 @@ fn folds_are_parts_of_the_criterion() {
                     moved[k] += h;
                     cycle.evaluate(&moved, &mut values).unwrap();
                     cycle.linearize(&moved).unwrap();
-                    cycle.fold(i, &mut row)
+                    cycle.fold(i)
                 });
                 let (Some(plus), Some(minus)) = (plus, minus) else { continue };
                 let difference = (plus - minus) / (2.0 * h);
@@ -210,6 +203,7 @@ fn folds_are_parts_of_the_criterion() {
     }
 }
 
+/// Gradient of the Lagrangian at `theta` with the given multipliers.
 fn lagrangian_gradient(cycle: &mut Cycle, theta: &[f64], lambda: &[f64], mu: &[f64], values: &mut Values) -> Vec<f64> {
     cycle.evaluate(theta, values).unwrap();
     cycle.linearize(theta).unwrap();

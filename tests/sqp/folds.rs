@@ -82,10 +82,14 @@ impl Problem for Magnitudes {
         if self.folds { self.terms.len() } else { 0 }
     }
 
-    fn fold(&self, i: usize, row: &mut [f64]) -> Option<f64> {
+    fn fold(&self, i: usize) -> Option<f64> {
         let c = self.inside(&self.at, i);
-        row.iter_mut().zip(&self.terms[i].0).for_each(|(row, a)| *row = c.signum() * a);
         (c.abs() > self.width).then_some(c.abs())
+    }
+
+    fn fold_row(&self, i: usize, row: &mut [f64]) {
+        let sign = self.inside(&self.at, i).signum();
+        row.iter_mut().zip(&self.terms[i].0).for_each(|(row, a)| *row = sign * a);
     }
 
     fn hessian(&mut self, _: &[f64], _: &[f64], hessian: &mut [f64]) -> bool {

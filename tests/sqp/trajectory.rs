@@ -172,7 +172,7 @@ impl Problem for Trajectory {
             self.torque_row(k, j, sign, row);
         }
     }
-    fn inequality_directions(&self, d: &[f64], out: &mut [f64]) {
+    fn directions(&self, d: &[f64], out: &mut [f64], _: &mut [f64]) {
         let m = self.samples;
         if !self.cheap_directions {
             let mut row = [0.0; 15];

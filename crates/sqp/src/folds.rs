@@ -6,7 +6,6 @@
 //! (Fletcher's Sℓ1QP, of the objective instead of the constraints). Where no step crosses a fold, nothing changes.
 
 use super::Problem;
-use super::dense::dot;
 use super::problem::Undefined;
 use super::qp::Place;
 use super::scaled::Scaled;
@@ -16,10 +15,10 @@ const PRICE: f64 = 2.0;
 
 /// The folds at the linearized point.
 pub(super) struct Folds {
-    n: usize,
-    /// ∇c, a row each, and c; no number where there is no such fold now.
-    rows: Vec<f64>,
+    /// c; no number where there is no such fold now.
     values: Vec<Option<f64>>,
+    /// ∇c·d of the last step.
+    pub(super) directions: Vec<f64>,
     /// Which have a row in the subproblem.
     pub(super) used: Vec<bool>,
     /// Where each stood in the last solution.
@@ -29,11 +28,10 @@ pub(super) struct Folds {
 }
 
 impl Folds {
-    pub(super) fn new(n: usize, count: usize) -> Self {
+    pub(super) fn new(count: usize) -> Self {
         Self {
-            n,
-            rows: vec![0.0; n * count],
             values: vec![None; count],
+            directions: vec![0.0; count],
             used: vec![false; count],
             places: vec![Place::Off; count],
             counted: true,
@@ -45,16 +43,11 @@ impl Folds {
     }
 
     pub(super) fn linearize<P: Problem>(&mut self, view: &Scaled<P>) -> Result<(), Undefined> {
-        for (k, row) in self.rows.chunks_exact_mut(self.n).enumerate() {
-            self.values[k] = view.fold(k, row)?;
+        for (k, value) in self.values.iter_mut().enumerate() {
+            *value = view.fold(k)?;
         }
         self.used.fill(false);
         Ok(())
-    }
-
-    /// ∇c.
-    pub(super) fn row(&self, k: usize) -> &[f64] {
-        &self.rows[k * self.n..(k + 1) * self.n]
     }
 
     /// c.
@@ -72,9 +65,9 @@ impl Folds {
         if self.counted { PRICE } else { 0.0 }
     }
 
-    /// What a step beyond a fold adds to the objective.
-    pub(super) fn beyond(&self, k: usize, d: &[f64]) -> f64 {
+    /// What the last step adds to the objective, beyond this fold.
+    pub(super) fn beyond(&self, k: usize) -> f64 {
         let Some(value) = self.values[k] else { return 0.0 };
-        self.price() * (-(value + dot(self.row(k), d))).max(0.0)
+        self.price() * (-(value + self.directions[k])).max(0.0)
     }
 }

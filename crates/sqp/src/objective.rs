@@ -72,8 +72,8 @@ impl<P: Problem, O: Objective> Problem for Redirected<'_, P, O> {
         self.problem.inequality_row(i, row);
     }
 
-    fn inequality_directions(&self, d: &[f64], out: &mut [f64]) {
-        self.problem.inequality_directions(d, out);
+    fn directions(&self, d: &[f64], inequalities: &mut [f64], folds: &mut [f64]) {
+        self.problem.directions(d, inequalities, folds);
     }
 
     fn hessian(&mut self, equality_multipliers: &[f64], inequality_multipliers: &[f64], hessian: &mut [f64]) -> bool {

@@ -11,8 +11,8 @@
 /// - [`evaluate`](Problem::evaluate) may be called at any point and must leave the derivatives of the last
 ///   [`linearize`](Problem::linearize) untouched: rows at the current iterate are still asked for while trial points are evaluated.
 /// - `linearize` is called only at the point of the *latest* `evaluate`, so whatever that call computed can be reused.
-/// - [`inequality_directions`](Problem::inequality_directions) must agree with [`inequality_row`](Problem::inequality_row) to
-///   rounding; the step of the quadratic subproblem is certified with it.
+/// - [`directions`](Problem::directions) must agree with [`inequality_row`](Problem::inequality_row) and [`fold_row`](Problem::fold_row)
+///   to rounding; the step of the quadratic subproblem is certified with it.
 /// - Values that are not finite count as [`Undefined`].
 pub trait Problem {
     /// Number of variables n.
@@ -41,8 +41,9 @@ pub trait Problem {
     /// ∇c_I,i at the linearized point.
     fn inequality_row(&self, i: usize, row: &mut [f64]);
 
-    /// J_I·d for all inequalities at once. The default goes through the rows; override it where there is a cheaper way.
-    fn inequality_directions(&self, d: &[f64], out: &mut [f64]) {
+    /// J_I·d for all inequalities, and ∇c·d for all [folds](Problem::folds), at once. The default goes through the rows; override it where
+    /// there is a cheaper way.
+    fn directions(&self, d: &[f64], inequalities: &mut [f64], folds: &mut [f64]) {
         let n = self.variables();
         // Up to the sizes met in practice the row lives on the stack.
         let mut stack = [0.0; 64];
@@ -54,9 +55,14 @@ pub trait Problem {
                 heap.as_mut_slice()
             }
         };
-        for (i, out) in out.iter_mut().enumerate() {
+        for (i, out) in inequalities.iter_mut().enumerate() {
             row.fill(0.0);
             self.inequality_row(i, row);
+            *out = super::dense::dot(row, d);
+        }
+        for (i, out) in folds.iter_mut().enumerate() {
+            row.fill(0.0);
+            self.fold_row(i, row);
             *out = super::dense::dot(row, d);
         }
     }
@@ -79,11 +85,15 @@ pub trait Problem {
         0
     }
 
-    /// Writes ∇c of fold `i` and gives c > 0; `None` where f has no such fold now. Called after `linearize` and before the next
-    /// `evaluate`.
-    fn fold(&self, i: usize, row: &mut [f64]) -> Option<f64> {
-        let _ = (i, row);
+    /// c > 0 of fold `i`; `None` where f has no such fold now. Called after `linearize` and before the next `evaluate`.
+    fn fold(&self, i: usize) -> Option<f64> {
+        let _ = i;
         None
+    }
+
+    /// ∇c of fold `i` at the linearized point; anything where there is none.
+    fn fold_row(&self, i: usize, row: &mut [f64]) {
+        let _ = (i, row);
     }
 
     /// The Hessian of f − λᵀc_E − μᵀc_I at the linearized point, row by row (n·n numbers, of which the lower triangle is

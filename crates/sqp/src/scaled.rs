@@ -185,12 +185,17 @@ impl<'p, P: Problem> Scaled<'p, P> {
         self.problem.folds()
     }
 
-    /// ∇c of a fold, and c, if f has it now.
-    pub(super) fn fold(&self, i: usize, row: &mut [f64]) -> Result<Option<f64>, Undefined> {
+    /// c of a fold, if f has it now.
+    pub(super) fn fold(&self, i: usize) -> Result<Option<f64>, Undefined> {
+        let value = self.problem.fold(i);
+        if value.is_none_or(f64::is_finite) { Ok(value) } else { Err(Undefined) }
+    }
+
+    /// ∇c of a fold.
+    pub(super) fn fold_row(&self, i: usize, row: &mut [f64]) -> Result<(), Undefined> {
         row.fill(0.0);
-        let Some(value) = self.problem.fold(i, row) else { return Ok(None) };
-        self.finish_row(1.0, row)?;
-        if value.is_finite() { Ok(Some(value)) } else { Err(Undefined) }
+        self.problem.fold_row(i, row);
+        self.finish_row(1.0, row)
     }
 
     fn finish_row(&self, weight: f64, row: &mut [f64]) -> Result<(), Undefined> {
@@ -200,16 +205,22 @@ impl<'p, P: Problem> Scaled<'p, P> {
         if row.iter().all(|a| a.is_finite()) { Ok(()) } else { Err(Undefined) }
     }
 
-    /// J_I·d; `scratch` holds d in the user's units.
-    pub(super) fn directions(&self, d: &[f64], scratch: &mut [f64], out: &mut [f64]) -> Result<(), Undefined> {
+    /// J_I·d, and ∇c·d of all folds; `scratch` holds d in the user's units.
+    pub(super) fn directions(
+        &self,
+        d: &[f64],
+        scratch: &mut [f64],
+        out: &mut [f64],
+        folds: &mut [f64],
+    ) -> Result<(), Undefined> {
         for ((s, d), scale) in scratch.iter_mut().zip(d).zip(&self.scale) {
             *s = d * scale;
         }
-        self.problem.inequality_directions(scratch, out);
+        self.problem.directions(scratch, out, folds);
         for (o, w) in out.iter_mut().zip(&self.inequality_weights) {
             *o *= w;
         }
-        if out.iter().all(|o| o.is_finite()) { Ok(()) } else { Err(Undefined) }
+        if out.iter().chain(&*folds).all(|o| o.is_finite()) { Ok(()) } else { Err(Undefined) }
     }
 
     /// The Hessian of f·(objective? 1 : 0) − λᵀc_E − μᵀc_I in z, in full. `false`: the problem has none.

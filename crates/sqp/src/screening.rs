@@ -102,7 +102,7 @@ impl Subproblem {
             reach: vec![0.0; inequalities],
             equality_constants: vec![0.0; equalities],
             inequality_constants: vec![0.0; inequalities],
-            folds: Folds::new(n, folds),
+            folds: Folds::new(folds),
             limit: f64::INFINITY,
             row: vec![0.0; n],
             scratch: vec![0.0; n],
@@ -154,19 +154,21 @@ impl Subproblem {
         self.folds.linearize(view)?;
         for k in 0..self.folds.count() {
             if self.folds.was_met(k) {
-                self.add_fold(k);
+                self.add_fold(view, k)?;
             }
         }
         Ok(())
     }
 
-    fn add_fold(&mut self, k: usize) {
+    fn add_fold<P: Problem>(&mut self, view: &Scaled<P>, k: usize) -> Result<(), Undefined> {
+        view.fold_row(k, &mut self.row)?;
         self.ids.push(Id::Fold(k));
         self.folds.used[k] = true;
-        self.qp.push(self.folds.row(k), self.folds.value(k), false, self.folds.price());
+        self.qp.push(&self.row, self.folds.value(k), false, self.folds.price());
         if let Some(hint) = self.qp.hints.last_mut() {
             *hint = self.folds.places[k];
         }
+        Ok(())
     }
 
     fn add<P: Problem>(&mut self, view: &Scaled<P>, i: usize) -> Result<(), Undefined> {
@@ -261,7 +263,8 @@ impl Subproblem {
         let mut start = start;
         for round in 0.. {
             start = self.solve_rows(start)?;
-            view.directions(&self.step.d, &mut self.scratch, &mut self.inequality_directions)?;
+            let (inequalities, folds) = (&mut self.inequality_directions, &mut self.folds.directions);
+            view.directions(&self.step.d, &mut self.scratch, inequalities, folds)?;
             if !self.add_violated(view, round)? {
                 break;
             }
@@ -343,8 +346,8 @@ impl Subproblem {
             }
         }
         for k in 0..self.folds.count() {
-            if !self.folds.used[k] && self.folds.beyond(k, &self.step.d) > 0.0 {
-                self.add_fold(k);
+            if !self.folds.used[k] && self.folds.beyond(k) > 0.0 {
+                self.add_fold(view, k)?;
             }
         }
         Ok(self.ids.len() > before)
@@ -377,7 +380,7 @@ impl Subproblem {
                 Id::Fold(k) => self.folds.places[k] = places[row],
             }
         }
-        self.beyond_folds = (0..self.folds.count()).map(|k| self.folds.beyond(k, &self.step.d)).sum();
+        self.beyond_folds = (0..self.folds.count()).map(|k| self.folds.beyond(k)).sum();
         for i in 0..self.reach.len() {
             let direction = self.inequality_directions[i];
             self.reach[i] = direction.abs();

@@ -7,15 +7,89 @@
 
 use super::Cycle;
 use super::phase::Phase;
-use crate::cost::Signs;
 use crate::lgl::NODES;
+use piaffe_model::Description;
 use piaffe_model::motion::Criterion;
-use piaffe_sqp::axpy;
+use piaffe_sqp::{axpy, dot};
+
+/// What the work that a joint does, or takes, in an element adds to the objective at the linearized point.
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    drive: usize,
+    /// First node of the element.
+    first: usize,
+    /// The sign of dry friction.
+    side: f64,
+    /// Of the powers at the nodes.
+    weights: [f64; NODES],
+    value: f64,
+    /// Relative derivatives in the duration of the phase and in that of the cycle.
+    by_duration: [f64; 2],
+}
 
 impl Phase {
-    /// P⁺ and P⁻ of each joint and element.
+    /// How many parts there may be: of work done and taken, by each joint, in each element.
     fn folds(&self) -> usize {
         2 * self.cost.drives.len() * self.mesh.elements
+    }
+
+    /// Keeps the parts of the criterion at the linearized point, where it counts `per_work` and the cycle lasts `duration`.
+    pub(super) fn divide(&mut self, per_work: f64, duration: f64) {
+        let (drives, own) = (self.cost.drives.len(), self.duration());
+        let scale = own * per_work / self.mesh.elements as f64;
+        let mut parts = std::mem::take(&mut self.parts);
+        parts.clear();
+        parts.resize(self.folds(), None);
+        for signs in &self.cost.signs {
+            let first = signs.element * (NODES - 1);
+            let drive = &self.cost.drives[signs.drive];
+            let powers: [f64; NODES] = std::array::from_fn(|i| drive.power(self.linearized(first + i), signs.side));
+            let slots = &mut parts[2 * (signs.element * drives + signs.drive)..][..2];
+            for (slot, sign) in slots.iter_mut().zip([1.0, -1.0]) {
+                let whole = &self.mesh.lobatto.weights;
+                let weights = std::array::from_fn(|i| 0.5 * scale * (signs.weights[i] + sign * whole[i]));
+                let value = dot(&weights, &powers);
+                let by_duration = [1.0 / own, -1.0 / duration];
+                let part = Part { drive: signs.drive, first, side: signs.side, weights, value, by_duration };
+                *slot = (value > 0.0).then_some(part);
+            }
+        }
+        self.parts = parts;
+    }
+
+    /// Adds to the changes of all parts what they have from a node, where its quantities change like this.
+    pub(super) fn add_changes(&self, node: usize, change: &[f64], out: &mut [f64]) {
+        let count = 2 * self.cost.drives.len();
+        let later = node / (NODES - 1);
+        let earlier = later.checked_sub(1).filter(|_| node % (NODES - 1) == 0);
+        for element in earlier.into_iter().chain([later]).filter(|element| *element < self.mesh.elements) {
+            let range = element * count..(element + 1) * count;
+            for (pair, out) in self.parts[range.clone()].chunks(2).zip(out[range].chunks_mut(2)) {
+                let Some(any) = pair.iter().flatten().next() else { continue };
+                let partials = self.cost.drives[any.drive].power_partials(self.linearized(node), any.side);
+                let along: f64 = partials.iter().map(|(quantity, partial)| partial * change[*quantity]).sum();
+                for (part, out) in pair.iter().zip(out) {
+                    *out += part.map_or(0.0, |part| part.weights[node - part.first] * along);
+                }
+            }
+        }
+    }
+
+    /// Adds what they have from the durations of the phase and of the cycle.
+    pub(super) fn add_stretch(&self, durations: [f64; 2], out: &mut [f64]) {
+        for (part, out) in self.parts.iter().zip(out) {
+            *out += part.map_or(0.0, |part| part.value * dot(&part.by_duration, &durations));
+        }
+    }
+
+    fn write_part(&self, d: &Description, part: &Part, row: &mut [f64]) {
+        let mut local = self.no_parameters();
+        local[self.layout.duration()] = part.value * part.by_duration[0];
+        for (node, weight) in (part.first..).zip(part.weights) {
+            let partials = self.cost.drives[part.drive].power_partials(self.linearized(node), part.side);
+            self.add_partials(d, node, &partials, weight, &mut local);
+        }
+        self.by_theta.pull(&local, 1.0, row);
     }
 }
 
@@ -28,39 +102,33 @@ impl Cycle<'_> {
         }
     }
 
-    /// What the work that a joint does, or takes, in an element adds to the objective, and its gradient in Θ; `None` if it does or takes
-    /// none.
-    pub(super) fn write_fold(&self, mut i: usize, row: &mut [f64]) -> Option<f64> {
+    /// Keeps the parts of the criterion at the linearized point.
+    pub(super) fn divide_criterion(&mut self) {
+        if self.criterion == Criterion::Energy {
+            let (per_work, duration) = (self.per_work(), self.duration);
+            self.phases.iter_mut().for_each(|phase| phase.divide(per_work, duration));
+        }
+    }
+
+    /// Fold `i`, and its phase.
+    fn part(&self, mut i: usize) -> Option<(&Phase, &Part)> {
         let phase = self.phases.iter().find(|p| {
             let rest = i.checked_sub(p.folds());
             i = rest.unwrap_or(i);
             rest.is_none()
         })?;
-        let (drive, element) = (i / 2 / phase.mesh.elements, i / 2 % phase.mesh.elements);
-        let signs = phase.cost.signs.iter().find(|signs| (signs.drive, signs.element) == (drive, element))?;
-        let weights = part(signs, &phase.mesh.lobatto.weights, [1.0, -1.0][i % 2])?;
-        let drive = &phase.cost.drives[drive];
-        let scale = phase.duration() * self.per_work() / phase.mesh.elements as f64;
-        let nodes = || (element * (NODES - 1)..).zip(weights);
-        let power = |node: usize| drive.power(phase.linearized(node), signs.side);
-        let value = nodes().map(|(node, weight)| scale * weight * power(node)).sum::<f64>();
-        if value <= 0.0 {
-            return None;
-        }
-        let mut local = phase.no_parameters();
-        local[phase.layout.duration()] = value / phase.duration();
-        for (node, weight) in nodes() {
-            let partials = drive.power_partials(phase.linearized(node), signs.side);
-            phase.add_partials(self.description(), node, &partials, scale * weight, &mut local);
-        }
-        phase.by_theta.pull(&local, 1.0, row);
-        axpy(-value / self.duration, &self.duration_gradient, row);
-        Some(value)
+        Some((phase, phase.parts.get(i)?.as_ref()?))
     }
-}
 
-/// Weights of the powers at the nodes of an element in the integral of one sign's part; `None` if there is no such part.
-fn part(signs: &Signs, whole: &[f64; NODES], sign: f64) -> Option<[f64; NODES]> {
-    let weights: [f64; NODES] = std::array::from_fn(|i| 0.5 * (signs.weights[i] + sign * whole[i]));
-    weights.iter().any(|weight| *weight != 0.0).then_some(weights)
+    pub(super) fn value_of_fold(&self, i: usize) -> Option<f64> {
+        self.part(i).map(|(_, part)| part.value)
+    }
+
+    pub(super) fn write_fold(&self, i: usize, row: &mut [f64]) {
+        if let Some((phase, part)) = self.part(i) {
+            phase.write_part(self.description(), part, row);
+            axpy(part.value * part.by_duration[1], &self.duration_gradient, row);
+        }
+    }
+
 }

@@ -4,6 +4,7 @@ use super::Variables;
 use super::by_theta::ByTheta;
 use super::crossing::Crossing;
 use super::dip::{Dip, Lowest};
+use super::fold::Part;
 use crate::constraints::{ImpactConstraints, PathConstraint, path_constraints};
 use crate::cost::{Integral, Partials};
 use crate::flow::{Fall, Flow, Layout, Mesh, Undefined};
@@ -28,6 +29,8 @@ pub struct Phase {
     /// Local parameters: see `flow`.
     pub parameters: Vec<f64>,
     pub cost: Integral,
+    /// Of the criterion at the linearized point, by element and joint, done and taken.
+    pub parts: Vec<Option<Part>>,
     /// Constraints at its instants.
     pub path: Vec<PathConstraint>,
     /// Constraints imposed between nodes.
@@ -88,6 +91,7 @@ impl Phase {
             layout,
             parameters: z(layout.len()),
             cost: Integral::new(d, mode, &mesh),
+            parts: Vec::new(),
             path: path_constraints(d, k),
             dips: Vec::new(),
             still: Vec::new(),

@@ -13,7 +13,7 @@ use crate::cost::Drive;
 use piaffe_model::shape::Block;
 use piaffe_model::{Description, Limit};
 use piaffe_sqp as sqp;
-use piaffe_sqp::{Problem, Undefined, Values, axpy, multiply};
+use piaffe_sqp::{Problem, Undefined, Values, axpy, dot, multiply};
 use smallvec::SmallVec;
 
 /// Where an impact's change of angular momentum about the transverse axis stands among its results.
@@ -388,6 +388,7 @@ impl Problem for Cycle<'_> {
             phase.differentiate(self.gait);
         }
         self.differentiate_cost();
+        self.divide_criterion();
         self.differentiate_equalities();
         self.differentiate_impacts();
         Ok(())
@@ -428,9 +429,12 @@ impl Problem for Cycle<'_> {
         }
     }
 
-    fn inequality_directions(&self, direction: &[f64], out: &mut [f64]) {
+    fn directions(&self, direction: &[f64], out: &mut [f64], folds: &mut [f64]) {
         let d = self.description();
         let mut change = SmallVec::<[f64; 32]>::new();
+        let total = dot(&self.duration_gradient, direction);
+        folds.fill(0.0);
+        let mut folds = folds;
         for (k, p) in self.phases.iter().enumerate() {
             let rows = self.rows.of(k);
             // The direction in local parameters, then in the state and the quantities of each instant.
@@ -439,6 +443,8 @@ impl Problem for Cycle<'_> {
             let mut dips = SmallVec::<[f64; 16]>::from_elem(0.0, p.dips.len());
             change.resize(p.instants.quantities.len(), 0.0);
             let mut slots = out[rows.path.clone()].iter_mut();
+            let (parts, rest) = folds.split_at_mut(p.parts.len().min(folds.len()));
+            folds = rest;
             for node in 0..p.mesh.nodes.len() {
                 p.instants.chain(d, &p.flow, node).push(&local, &mut state);
                 multiply(p.instants.gradients(node), &state, &mut change);
@@ -455,7 +461,11 @@ impl Problem for Cycle<'_> {
                         *sum += share * along(&p.path[dip.constraint]);
                     }
                 }
+                if !parts.is_empty() {
+                    p.add_changes(node, &change, parts);
+                }
             }
+            p.add_stretch([local[p.layout.duration()], total], parts);
             out[rows.dips.clone()].copy_from_slice(&dips);
         }
         let first = out.len() - self.rows.impacts();
@@ -487,8 +497,12 @@ impl Problem for Cycle<'_> {
         self.count_folds()
     }
 
-    fn fold(&self, i: usize, row: &mut [f64]) -> Option<f64> {
-        self.write_fold(i, row)
+    fn fold(&self, i: usize) -> Option<f64> {
+        self.value_of_fold(i)
+    }
+
+    fn fold_row(&self, i: usize, row: &mut [f64]) {
+        self.write_fold(i, row);
     }
 
     fn hessian(&mut self, equality_multipliers: &[f64], inequality_multipliers: &[f64], hessian: &mut [f64]) -> bool {
