@@ -80,19 +80,18 @@ impl<P: Problem> Run<'_, '_, P> {
             self.look_at_violation();
             return self.towards_feasibility();
         }
-        if self.exact {
-            self.plain_step(false, self.prohibitive())?;
-        }
         let prohibitive = self.prohibitive();
         let mut penalty = self.merit.high;
+        // Without counting on rows that give way.
+        self.plain_step(false, penalty)?;
         loop {
-            self.subproblem.cap(penalty, true);
-            self.subproblem.solve_again(&self.view)?;
             let relief = violation - self.subproblem.linear_violation;
             if !self.subproblem.yielding || relief >= FAIR * (violation - best) || penalty >= prohibitive {
                 break;
             }
             penalty = (10.0 * penalty).min(prohibitive);
+            self.subproblem.cap(penalty, true);
+            self.subproblem.solve_again(&self.view)?;
         }
         self.merit.raise(penalty);
         Ok(self.conclude(Kind::Elastic))
