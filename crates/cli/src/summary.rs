@@ -44,6 +44,17 @@ fn confidence(r: &GaitResult) -> String {
     format!("reached by {} of {starts} starts{more}; {unseen}", best.reached)
 }
 
+/// A saving that a slope may promise, %: what it says of larger ones is not true any more.
+const PROMISED: f64 = 10.0;
+
+/// What a small change of a number saves: of 1 %, or where that would promise too much, of a tenth of it, and so on.
+fn advice(s: &Sensitivity) -> String {
+    let (slope, sign) = (s.elasticity.abs(), if s.elasticity > 0.0 { "−" } else { "+" });
+    let digits = (0..8).find(|digits| slope * 0.1_f64.powi(*digits) <= PROMISED).unwrap_or(8);
+    let change = 0.1_f64.powi(digits);
+    format!("{} {sign}{change:.*} % saves {:.2} %", s.parameter, digits as usize, slope * change)
+}
+
 /// A flight that is as short as the gait allows: how long that is, s.
 pub fn shortest_flight(description: &Description, r: &GaitResult) -> Option<f64> {
     let flights = description.phases.iter().zip(&r.durations).filter(|(phase, _)| phase.mode == Mode::Flight);
@@ -162,10 +173,6 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
         writeln!(out, "  optimality      held {held}")?;
     }
     if let Some(sensitivities) = &r.sensitivities {
-        let advice = |s: &Sensitivity| {
-            let sign = if s.elasticity > 0.0 { "−" } else { "+" };
-            format!("{} {sign}1 % saves {:.2} %", s.parameter, s.elasticity.abs())
-        };
         let advice: Vec<String> = sensitivities.of_robot().take(3).map(advice).collect();
         writeln!(out, "  to change       {}", advice.join("; "))?;
     }
@@ -191,4 +198,25 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
         }
     }
     writeln!(out, "  time            {:.3} s", r.seconds)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slope_promises_no_more_than_it_can_keep() {
+        let sensitivity = Sensitivity {
+            parameter: "l".into(),
+            numbers: vec!["l".into()],
+            unit: "m".into(),
+            value: 1.0,
+            slope: 1.0,
+            elasticity: 1.0,
+        };
+        let of = |elasticity| advice(&Sensitivity { elasticity, ..sensitivity.clone() });
+        assert_eq!(of(4.567), "l −1 % saves 4.57 %");
+        assert_eq!(of(-10.77), "l +0.1 % saves 1.08 %");
+        assert_eq!(of(84963.59), "l −0.0001 % saves 8.50 %");
+    }
 }

@@ -1,7 +1,8 @@
-//! A kernel as a list of simple operations on numbered cells, and what runs it.
+//! A kernel as a list of sums of products of numbered cells, and what runs it.
 //!
-//! The operations are those of the generated code, in its order (`piaffe_codegen::program::Step`): the results have the same bits.
-//! A sum is built up in one number and put into its cell; products of three are one operation, which is most of what kernels are.
+//! The sums are those of the generated code, in its order (`piaffe_codegen::program::Step`), with its products in their order: the
+//! results have the same bits. Every product has four factors, some of which may be one: so there is nothing to decide within a sum, and
+//! a processor that cannot foresee decisions does not have to.
 
 use piaffe_codegen::dynamics::Kernel;
 use piaffe_codegen::program::{Id, Node, Program, Step, Term, math, terms};
@@ -16,29 +17,13 @@ type Cell = u16;
 /// As many as a [`Cell`] can tell apart, so that none is out of bounds.
 type Cells = [f64; 1 << 16];
 
-/// Works on a sum, a product and cells.
+/// Factors of a product.
+const FACTORS: usize = 4;
+
+/// What becomes of a sum, and in which cell.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-enum Operation {
-    /// The sum begins with a cell, or with a product of cells.
-    Set(Cell),
-    Set2(Cell, Cell),
-    Set3(Cell, Cell, Cell),
-    Add(Cell),
-    Add2(Cell, Cell),
-    Add3(Cell, Cell, Cell),
-    Subtract(Cell),
-    Subtract2(Cell, Cell),
-    Subtract3(Cell, Cell, Cell),
-    /// A longer product begins, and goes on.
-    Multiply3(Cell, Cell, Cell),
-    Times(Cell),
-    /// Its last factor, and what becomes of it.
-    SetTimes(Cell),
-    AddTimes(Cell),
-    SubtractTimes(Cell),
-    Negate,
-    /// The sum is known.
-    Store(Cell),
+enum End {
+    Value(Cell),
     Reciprocal(Cell),
     /// Its sine and cosine.
     Sine(Cell, Cell),
@@ -50,7 +35,10 @@ pub struct Tape {
     constants: Vec<f64>,
     /// Length of each input.
     inputs: Vec<usize>,
-    operations: Arc<[Operation]>,
+    /// Of all sums, one after another.
+    products: Arc<[[Cell; FACTORS]]>,
+    /// How many products each has, and its end.
+    sums: Arc<[(u16, End)]>,
     outputs: Arc<[Cell]>,
 }
 
@@ -89,7 +77,7 @@ impl Tape {
     pub fn evaluate(&self, inputs: &[&[f64]], out: &mut [f64]) {
         CELLS.with_borrow_mut(|cells| match self.load(inputs, cells) {
             Some(()) => {
-                run(&self.operations, cells);
+                run(&self.sums, &self.products, cells);
                 out.iter_mut().zip(self.outputs.iter()).for_each(|(out, cell)| *out = cells[usize::from(*cell)]);
             }
             None => out.fill(f64::NAN),
@@ -121,43 +109,22 @@ impl Tape {
     }
 }
 
-fn run(operations: &[Operation], cells: &mut Cells) {
-    let (mut sum, mut product) = (0.0, 0.0);
-    macro_rules! cell {
-        ($cell:ident) => {
-            cells[usize::from($cell)]
-        };
-    }
-    for operation in operations {
-        match *operation {
-            Operation::Set(a) => sum = cell!(a),
-            Operation::Set2(a, b) => sum = cell!(a) * cell!(b),
-            Operation::Set3(a, b, c) => sum = cell!(a) * cell!(b) * cell!(c),
-            Operation::Add(a) => sum += cell!(a),
-            Operation::Add2(a, b) => sum += cell!(a) * cell!(b),
-            Operation::Add3(a, b, c) => sum += cell!(a) * cell!(b) * cell!(c),
-            Operation::Subtract(a) => sum -= cell!(a),
-            Operation::Subtract2(a, b) => sum -= cell!(a) * cell!(b),
-            Operation::Subtract3(a, b, c) => sum -= cell!(a) * cell!(b) * cell!(c),
-            Operation::Multiply3(a, b, c) => product = cell!(a) * cell!(b) * cell!(c),
-            Operation::Times(a) => product *= cell!(a),
-            Operation::SetTimes(a) => sum = product * cell!(a),
-            Operation::AddTimes(a) => sum += product * cell!(a),
-            Operation::SubtractTimes(a) => sum -= product * cell!(a),
-            Operation::Negate => sum = -sum,
-            Operation::Store(a) => cell!(a) = sum,
-            Operation::Reciprocal(a) => cell!(a) = 1.0 / sum,
-            Operation::Sine(sin, cos) => (cell!(sin), cell!(cos)) = math::sin_cos(sum),
+fn run(sums: &[(u16, End)], mut products: &[[Cell; FACTORS]], cells: &mut Cells) {
+    for (count, end) in sums {
+        let Some((own, rest)) = products.split_at_checked(usize::from(*count)) else { return };
+        products = rest;
+        // To add something to −0 changes nothing of it, not even its sign.
+        let mut sum = -0.0;
+        for factors in own {
+            let [a, b, c, d] = factors.map(|cell| cells[usize::from(cell)]);
+            sum += a * b * c * d;
+        }
+        match *end {
+            End::Value(cell) => cells[usize::from(cell)] = sum,
+            End::Reciprocal(cell) => cells[usize::from(cell)] = 1.0 / sum,
+            End::Sine(sin, cos) => (cells[usize::from(sin)], cells[usize::from(cos)]) = math::sin_cos(sum),
         }
     }
-}
-
-/// Where a term stands in its sum.
-#[derive(Clone, Copy, PartialEq)]
-enum Place {
-    First,
-    Added,
-    Subtracted,
 }
 
 /// Writes the tape of a kernel.
@@ -171,29 +138,29 @@ struct Writer<'a> {
     /// Of each node, once it is known.
     nodes: Vec<Cell>,
     next: usize,
-    operations: Vec<Operation>,
+    products: Vec<[Cell; FACTORS]>,
+    sums: Vec<(u16, End)>,
 }
 
 impl<'a> Writer<'a> {
     fn new(kernel: &'a Kernel, program: &'a Program) -> Result<Writer<'a>, Unrunnable> {
         let inputs: Vec<usize> = kernel.inputs.iter().map(|input| input.symbols.len()).collect();
         let nodes = vec![0; program.nodes.len()];
-        let (constants, places, operations) = (Vec::new(), BTreeMap::new(), Vec::new());
-        let mut writer = Writer { kernel, program, constants, places, inputs, nodes, next: 0, operations };
+        let (constants, places, products, sums) = (Vec::new(), BTreeMap::new(), Vec::new(), Vec::new());
+        let mut writer = Writer { kernel, program, constants, places, inputs, nodes, next: 0, products, sums };
         writer.number_constants()?;
         writer.number_inputs()?;
         Ok(writer)
     }
 
     fn number_constants(&mut self) -> Result<(), Unrunnable> {
-        for sum in &self.program.sums {
-            for (k, term) in terms(sum).enumerate() {
-                if let Some(number) = number(term, k == 0) {
-                    self.constant(number)?;
-                }
+        for term in self.program.sums.iter().flat_map(terms) {
+            if let Some(number) = number(term) {
+                self.constant(number)?;
             }
         }
-        self.constant(0.0).map(|_| ())
+        self.constant(0.0)?;
+        self.constant(1.0).map(|_| ())
     }
 
     fn constant(&mut self, number: f64) -> Result<Cell, Unrunnable> {
@@ -230,7 +197,7 @@ impl<'a> Writer<'a> {
 
     /// One that nothing else is in.
     fn cell(&mut self) -> Result<Cell, Unrunnable> {
-        let cell = Cell::try_from(self.next).map_err(|_| Unrunnable::TooLarge { kernel: self.kernel.name.clone() })?;
+        let cell = Cell::try_from(self.next).map_err(|_| self.too_large())?;
         self.next += 1;
         Ok(cell)
     }
@@ -239,27 +206,27 @@ impl<'a> Writer<'a> {
         for step in self.program.steps() {
             match step {
                 Step::Value(id, sum) => {
-                    self.sum(sum)?;
+                    let count = self.sum(sum)?;
                     let cell = self.node(id)?;
-                    self.operations.push(Operation::Store(cell));
+                    self.sums.push((count, End::Value(cell)));
                 }
                 Step::Reciprocal(id, sum) => {
-                    self.sum(sum)?;
+                    let count = self.sum(sum)?;
                     let cell = self.node(id)?;
-                    self.operations.push(Operation::Reciprocal(cell));
+                    self.sums.push((count, End::Reciprocal(cell)));
                 }
                 Step::Sines(sines) => {
                     for sine in sines {
-                        self.sum(sine.argument)?;
+                        let count = self.sum(sine.argument)?;
                         let [sin, cos] = [self.node_or_none(sine.sin)?, self.node_or_none(sine.cos)?];
-                        self.operations.push(Operation::Sine(sin, cos));
+                        self.sums.push((count, End::Sine(sin, cos)));
                     }
                 }
             }
         }
         let outputs = self.outputs()?;
-        let (constants, operations) = (self.constants, self.operations.into());
-        Ok(Tape { constants, inputs: self.inputs, operations, outputs: outputs.into() })
+        let (products, sums) = (self.products.into(), self.sums.into());
+        Ok(Tape { constants: self.constants, inputs: self.inputs, products, sums, outputs: outputs.into() })
     }
 
     fn node(&mut self, id: Id) -> Result<Cell, Unrunnable> {
@@ -285,9 +252,9 @@ impl<'a> Writer<'a> {
                 (Some(cell), _) => *cell,
                 (None, Some(node)) => node,
                 (None, None) => {
-                    self.sum(*sum)?;
+                    let count = self.sum(*sum)?;
                     let cell = self.cell()?;
-                    self.operations.push(Operation::Store(cell));
+                    self.sums.push((count, End::Value(cell)));
                     cell
                 }
             };
@@ -305,64 +272,51 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Operations that make a sum.
-    fn sum(&mut self, sum: usize) -> Result<(), Unrunnable> {
+    /// The products of a sum, and how many they are.
+    fn sum(&mut self, sum: usize) -> Result<u16, Unrunnable> {
         let program = self.program;
-        for (k, term) in terms(&program.sums[sum]).enumerate() {
-            let place = match k {
-                0 => Place::First,
-                _ if term.coefficient < 0.0 => Place::Subtracted,
-                _ => Place::Added,
-            };
-            self.term(term, place)?;
+        let mut own = Vec::with_capacity(program.sums[sum].len().max(1));
+        for term in terms(&program.sums[sum]) {
+            own.push(self.product(term)?);
         }
-        if program.sums[sum].is_empty() {
+        if own.is_empty() {
             let zero = self.constant(0.0)?;
-            self.operations.push(Operation::Set(zero));
+            own.push(self.padded(&[zero])?);
         }
-        Ok(())
+        self.products.extend(&own);
+        u16::try_from(own.len()).map_err(|_| self.too_large())
     }
 
-    fn term(&mut self, term: &Term, place: Place) -> Result<(), Unrunnable> {
-        let number = number(term, place == Place::First);
+    /// The factors of a term. Of more than there is room for, the first make a sum of their own.
+    fn product(&mut self, term: &Term) -> Result<[Cell; FACTORS], Unrunnable> {
         let mut cells = Vec::with_capacity(term.factors.len() + 1);
-        if let Some(number) = number {
+        if let Some(number) = number(term) {
             cells.push(self.constant(number)?);
         }
         cells.extend(term.factors.iter().map(|id| self.nodes[*id as usize]));
-        use Operation::*;
-        use Place::*;
-        self.operations.extend(match (cells.as_slice(), place) {
-            (&[a], First) => vec![Set(a)],
-            (&[a], Added) => vec![Add(a)],
-            (&[a], Subtracted) => vec![Subtract(a)],
-            (&[a, b], First) => vec![Set2(a, b)],
-            (&[a, b], Added) => vec![Add2(a, b)],
-            (&[a, b], Subtracted) => vec![Subtract2(a, b)],
-            (&[a, b, c], First) => vec![Set3(a, b, c)],
-            (&[a, b, c], Added) => vec![Add3(a, b, c)],
-            (&[a, b, c], Subtracted) => vec![Subtract3(a, b, c)],
-            (&[a, b, c, ref middle @ .., last], place) => {
-                let mut list = vec![Multiply3(a, b, c)];
-                list.extend(middle.iter().map(|cell| Times(*cell)));
-                list.push(match place {
-                    First => SetTimes(last),
-                    Added => AddTimes(last),
-                    Subtracted => SubtractTimes(last),
-                });
-                list
-            }
-            (&[], _) => Vec::new(),
-        });
-        if place == First && term.coefficient < 0.0 && number.is_none() {
-            self.operations.push(Negate);
+        while cells.len() > FACTORS {
+            let rest = cells.split_off(FACTORS);
+            let first = self.padded(&cells)?;
+            self.products.push(first);
+            let cell = self.cell()?;
+            self.sums.push((1, End::Value(cell)));
+            cells = [&[cell], &*rest].concat();
         }
-        Ok(())
+        self.padded(&cells)
+    }
+
+    fn padded(&mut self, cells: &[Cell]) -> Result<[Cell; FACTORS], Unrunnable> {
+        let mut factors = [self.constant(1.0)?; FACTORS];
+        factors.iter_mut().zip(cells).for_each(|(factor, cell)| *factor = *cell);
+        Ok(factors)
+    }
+
+    fn too_large(&self) -> Unrunnable {
+        Unrunnable::TooLarge { kernel: self.kernel.name.clone() }
     }
 }
 
-/// The number that a term's product begins with; of a sum's first term with its sign.
-fn number(term: &Term, first: bool) -> Option<f64> {
-    let number = term.number()?;
-    Some(if first && term.coefficient < 0.0 { -number } else { number })
+/// The number that a term's product begins with, with its sign.
+fn number(term: &Term) -> Option<f64> {
+    (term.coefficient != 1.0 || term.factors.is_empty()).then_some(term.coefficient)
 }

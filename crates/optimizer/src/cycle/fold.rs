@@ -130,5 +130,4 @@ impl Cycle<'_> {
             axpy(part.value * part.by_duration[1], &self.duration_gradient, row);
         }
     }
-
 }
