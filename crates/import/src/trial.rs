@@ -118,9 +118,13 @@ fn search(gait: &dyn Gait, outcome: &mut Outcome) {
             break;
         }
         let speed = rounded(share * natural, 2);
-        let starts = Some(if known.is_empty() { STARTS } else { STARTS_BESIDE });
         let task = Task { gait, criterion: outcome.criterion, speed };
-        let result = task.search(&Settings { starts, ..Settings::default() }, &known, &|_| {});
+        let from = |starts| task.search(&Settings { starts: Some(starts), ..Settings::default() }, &known, &|_| {});
+        let mut result = from(if known.is_empty() { STARTS } else { STARTS_BESIDE });
+        if !result.is_optimal() && !known.is_empty() {
+            // Before the robot is said to go no faster, its neighbour is not relied upon.
+            result = from(STARTS);
+        }
         if !result.is_optimal() && outcome.obstacle.is_empty() {
             outcome.obstacle = obstacle(&result);
         }
