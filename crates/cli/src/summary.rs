@@ -47,10 +47,24 @@ fn confidence(r: &GaitResult) -> String {
 /// A saving that a slope may promise, %: what it says of larger ones is not true any more.
 const PROMISED: f64 = 10.0;
 
+/// Beyond this elasticity the optimum stands at a corner, a leg stretched or folded to the last, say: its slope is that of a point.
+const TOO_STEEP: f64 = 1e3;
+
+/// What to change, the three greatest savings, and which numbers have no slope that could tell.
+fn advice<'s>(slopes: impl Iterator<Item = &'s Sensitivity>) -> String {
+    let (useful, steep): (Vec<_>, Vec<_>) = slopes.partition(|s| s.elasticity.abs() <= TOO_STEEP);
+    let mut advice: Vec<String> = useful.into_iter().take(3).map(saving).collect();
+    if !steep.is_empty() {
+        let names: Vec<&str> = steep.iter().map(|s| s.parameter.as_str()).collect();
+        advice.push(format!("too steep for advice: {}", names.join(", ")));
+    }
+    advice.join("; ")
+}
+
 /// What a small change of a number saves: of 1 %, or where that would promise too much, of a tenth of it, and so on.
-fn advice(s: &Sensitivity) -> String {
+fn saving(s: &Sensitivity) -> String {
     let (slope, sign) = (s.elasticity.abs(), if s.elasticity > 0.0 { "−" } else { "+" });
-    let digits = (0..8).find(|digits| slope * 0.1_f64.powi(*digits) <= PROMISED).unwrap_or(8);
+    let digits = (0..3).find(|digits| slope * 0.1_f64.powi(*digits) <= PROMISED).unwrap_or(3);
     let change = 0.1_f64.powi(digits);
     format!("{} {sign}{change:.*} % saves {:.2} %", s.parameter, digits as usize, slope * change)
 }
@@ -173,8 +187,7 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
         writeln!(out, "  optimality      held {held}")?;
     }
     if let Some(sensitivities) = &r.sensitivities {
-        let advice: Vec<String> = sensitivities.of_robot().take(3).map(advice).collect();
-        writeln!(out, "  to change       {}", advice.join("; "))?;
+        writeln!(out, "  to change       {}", advice(sensitivities.of_robot()))?;
     }
     if let Some(stability) = &r.stability {
         writeln!(out, "  joints by clock {}", stability.clock)?;
@@ -206,17 +219,16 @@ mod tests {
 
     #[test]
     fn a_slope_promises_no_more_than_it_can_keep() {
-        let sensitivity = Sensitivity {
-            parameter: "l".into(),
-            numbers: vec!["l".into()],
+        let of = |parameter: &str, elasticity: f64| Sensitivity {
+            parameter: parameter.into(),
+            numbers: vec![parameter.into()],
             unit: "m".into(),
             value: 1.0,
-            slope: 1.0,
-            elasticity: 1.0,
+            slope: elasticity,
+            elasticity,
         };
-        let of = |elasticity| advice(&Sensitivity { elasticity, ..sensitivity.clone() });
-        assert_eq!(of(4.567), "l −1 % saves 4.57 %");
-        assert_eq!(of(-10.77), "l +0.1 % saves 1.08 %");
-        assert_eq!(of(84963.59), "l −0.0001 % saves 8.50 %");
+        let slopes = [of("a", 84963.59), of("b", -107.7), of("c", 4.567), of("d", 1.0), of("e", 0.5)];
+        let expected = "b +0.01 % saves 1.08 %; c −1 % saves 4.57 %; d −1 % saves 1.00 %; too steep for advice: a";
+        assert_eq!(advice(slopes.iter()), expected);
     }
 }

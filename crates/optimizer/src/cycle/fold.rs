@@ -61,7 +61,7 @@ impl Phase {
     pub(super) fn add_changes(&self, node: usize, change: &[f64], out: &mut [f64]) {
         let count = 2 * self.cost.drives.len();
         let later = node / (NODES - 1);
-        let earlier = later.checked_sub(1).filter(|_| node % (NODES - 1) == 0);
+        let earlier = later.checked_sub(1).filter(|_| node.is_multiple_of(NODES - 1));
         for element in earlier.into_iter().chain([later]).filter(|element| *element < self.mesh.elements) {
             let range = element * count..(element + 1) * count;
             for (pair, out) in self.parts[range.clone()].chunks(2).zip(out[range].chunks_mut(2)) {
