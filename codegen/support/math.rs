@@ -10,7 +10,11 @@ pub fn sin_cos_together<const N: usize>(angles: [f64; N]) -> [(f64, f64); N] {
         (sin[k], cos[k]) = sin_cos(x[k]);
         (sin[k + 4], cos[k + 4]) = sin_cos(x[k + 4]);
     }
-    core::array::from_fn(|k| (sin[k], cos[k]))
+    let mut both = [(0.0, 0.0); N];
+    for k in 0..N {
+        both[k] = (sin[k], cos[k]);
+    }
+    both
 }
 
 /// Sines and cosines of some angles in step, each with the bits of [`sin_cos`]: inside a loop over states, so that the

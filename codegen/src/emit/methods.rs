@@ -117,16 +117,31 @@ fn call(kernel: &Kernel) -> Written<TokenStream> {
         Ok(if is_of_robot(input) { quote!(&self.#name) } else { quote!(#name) })
     });
     let arguments = arguments.collect::<Written<Vec<_>>>()?;
-    let slice = |value: TokenStream, shape: Shape| match shape {
-        Shape::Scalar => quote!(core::slice::from_ref(&#value)),
-        Shape::Vector(_) => quote!(#value.as_slice()),
-        Shape::Matrix(..) => quote!(#value.as_flattened()),
+    // Arrays are put down as what they are: of slices the compiler would have to find out how long they are.
+    let put = |value: TokenStream, shape: Shape| match shape {
+        Shape::Scalar => quote! {
+            let Some((head, rest)) = rest.split_first_mut() else { return };
+            *head = #value;
+        },
+        Shape::Vector(_) => quote! {
+            let Some((head, rest)) = rest.split_first_chunk_mut() else { return };
+            *head = #value;
+        },
+        Shape::Matrix(..) => quote! {
+            let mut rows = rest;
+            for row in #value {
+                let Some((head, rest)) = rows.split_first_chunk_mut() else { return };
+                *head = row;
+                rows = rest;
+            }
+            let rest = rows;
+        },
     };
     let pieces = match kernel.outputs.as_slice() {
-        [one] => vec![slice(quote!(r), one.shape)],
+        [one] => vec![put(quote!(r), one.shape)],
         several => {
             let piece = |output: &Output| {
-                Ok(slice(
+                Ok(put(
                     {
                         let name = ident(output.name)?;
                         quote!(r.#name)
@@ -140,11 +155,8 @@ fn call(kernel: &Kernel) -> Written<TokenStream> {
     Ok(quote! {
         #(let Some(#arrays) = #arrays.first_chunk() else { return out.fill(f64::NAN) };)*
         let r = #function(#(#arguments),*);
-        let mut rest = out;
-        for piece in [#(#pieces),*] {
-            let Some((head, tail)) = rest.split_at_mut_checked(piece.len()) else { return };
-            head.copy_from_slice(piece);
-            rest = tail;
-        }
+        let rest = out;
+        #(#pieces)*
+        let _ = rest;
     })
 }
