@@ -117,14 +117,36 @@ fn call(kernel: &Kernel) -> Written<TokenStream> {
         Ok(if is_of_robot(input) { quote!(&self.#name) } else { quote!(#name) })
     });
     let arguments = arguments.collect::<Written<Vec<_>>>()?;
-    // Arrays are put down as what they are: of slices the compiler would have to find out how long they are.
-    let put = |value: TokenStream, shape: Shape| match shape {
+    let results = match kernel.outputs.as_slice() {
+        [one] => vec![(quote!(r), one.shape)],
+        several => {
+            let field = |output: &Output| ident(output.name).map(|name| (quote!(r.#name), output.shape));
+            several.iter().map(field).collect::<Written<_>>()?
+        }
+    };
+    let count = results.len();
+    let pieces = results.into_iter().enumerate().map(|(i, (value, shape))| {
+        let rest = if i + 1 == count { quote!(_) } else { quote!(rest) };
+        put(&value, shape, &rest)
+    });
+    Ok(quote! {
+        #(let Some(#arrays) = #arrays.first_chunk() else { return out.fill(f64::NAN) };)*
+        let r = #function(#(#arguments),*);
+        let rest = out;
+        #(#pieces)*
+    })
+}
+
+/// Puts a result down at the front of `rest`; what is left of that is called `after`. Arrays are put down as what they are: of
+/// slices the compiler would have to find out how long they are.
+fn put(value: &TokenStream, shape: Shape, after: &TokenStream) -> TokenStream {
+    match shape {
         Shape::Scalar => quote! {
-            let Some((head, rest)) = rest.split_first_mut() else { return };
+            let Some((head, #after)) = rest.split_first_mut() else { return };
             *head = #value;
         },
         Shape::Vector(_) => quote! {
-            let Some((head, rest)) = rest.split_first_chunk_mut() else { return };
+            let Some((head, #after)) = rest.split_first_chunk_mut() else { return };
             *head = #value;
         },
         Shape::Matrix(..) => quote! {
@@ -134,29 +156,7 @@ fn call(kernel: &Kernel) -> Written<TokenStream> {
                 *head = row;
                 rows = rest;
             }
-            let rest = rows;
+            let #after = rows;
         },
-    };
-    let pieces = match kernel.outputs.as_slice() {
-        [one] => vec![put(quote!(r), one.shape)],
-        several => {
-            let piece = |output: &Output| {
-                Ok(put(
-                    {
-                        let name = ident(output.name)?;
-                        quote!(r.#name)
-                    },
-                    output.shape,
-                ))
-            };
-            several.iter().map(piece).collect::<Written<_>>()?
-        }
-    };
-    Ok(quote! {
-        #(let Some(#arrays) = #arrays.first_chunk() else { return out.fill(f64::NAN) };)*
-        let r = #function(#(#arguments),*);
-        let rest = out;
-        #(#pieces)*
-        let _ = rest;
-    })
+    }
 }

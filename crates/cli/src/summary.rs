@@ -47,12 +47,9 @@ fn confidence(r: &GaitResult) -> String {
 /// A saving that a slope may promise, %: what it says of larger ones is not true any more.
 const PROMISED: f64 = 10.0;
 
-/// Beyond this elasticity the optimum stands at a corner, a leg stretched or folded to the last, say: its slope is that of a point.
-const TOO_STEEP: f64 = 1e3;
-
 /// What to change, the three greatest savings, and which numbers have no slope that could tell.
 fn advice<'s>(slopes: impl Iterator<Item = &'s Sensitivity>) -> String {
-    let (useful, steep): (Vec<_>, Vec<_>) = slopes.partition(|s| s.elasticity.abs() <= TOO_STEEP);
+    let (steep, useful): (Vec<_>, Vec<_>) = slopes.partition(|s| s.is_steep());
     let mut advice: Vec<String> = useful.into_iter().take(3).map(saving).collect();
     if !steep.is_empty() {
         let names: Vec<&str> = steep.iter().map(|s| s.parameter.as_str()).collect();

@@ -11,6 +11,7 @@ const SHOWN: usize = 12;
 pub fn section(r: &GaitResult) -> Markup {
     let Some(sensitivities) = &r.sensitivities else { return html! {} };
     let (effective, idle): (Vec<_>, Vec<_>) = sensitivities.slopes.iter().partition(|s| s.slope != 0.0);
+    let (steep, effective): (Vec<_>, Vec<_>) = effective.into_iter().partition(|s| s.is_steep());
     let unit = r.criterion.unit();
     html! {
         div.receipt {
@@ -23,12 +24,19 @@ pub fn section(r: &GaitResult) -> Markup {
             @if effective.len() > SHOWN {
                 details { summary { "Smaller ones" } div.scroll { table { tbody { @for s in &effective[SHOWN..] { (row(s, unit)) } } } } }
             }
+            @if !steep.is_empty() {
+                p.note { "Too steep for advice: " (names(&steep)) ". There the optimum stands at a corner, a leg stretched or folded to the last, say; the slope is that of the point alone." }
+            }
             @if !idle.is_empty() { p.note { (idle.len()) " more numbers, limits with room to spare most of all, have no influence here." } }
             @if !sensitivities.one_sided.is_empty() {
                 p.note { "Active without a price, so that slopes may hold to one side only: " (sensitivities.one_sided.join(", ")) "." }
             }
         }
     }
+}
+
+fn names(slopes: &[&Sensitivity]) -> String {
+    slopes.iter().map(|s| s.parameter.as_str()).collect::<Vec<_>>().join(", ")
 }
 
 fn row(s: &Sensitivity, unit: &str) -> Markup {

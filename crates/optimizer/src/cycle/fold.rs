@@ -14,7 +14,7 @@ use piaffe_sqp::{axpy, dot};
 
 /// What the work that a joint does, or takes, in an element adds to the objective at the linearized point.
 #[derive(Clone, Copy, Debug)]
-pub struct Part {
+struct Part {
     drive: usize,
     /// First node of the element.
     first: usize,
@@ -23,13 +23,20 @@ pub struct Part {
     /// Of the powers at the nodes.
     weights: [f64; NODES],
     value: f64,
-    /// Relative derivatives in the duration of the phase and in that of the cycle.
+}
+
+/// The parts of a phase.
+#[derive(Clone, Debug, Default)]
+pub struct Parts {
+    /// Of work done and of work taken, by each joint, in each element.
+    slots: Vec<Option<Part>>,
+    /// Relative derivatives of them all in the duration of the phase and in that of the cycle.
     by_duration: [f64; 2],
 }
 
 impl Phase {
     /// How many parts there may be: of work done and taken, by each joint, in each element.
-    fn folds(&self) -> usize {
+    pub(super) fn folds(&self) -> usize {
         2 * self.cost.drives.len() * self.mesh.elements
     }
 
@@ -38,19 +45,19 @@ impl Phase {
         let (drives, own) = (self.cost.drives.len(), self.duration());
         let scale = own * per_work / self.mesh.elements as f64;
         let mut parts = std::mem::take(&mut self.parts);
-        parts.clear();
-        parts.resize(self.folds(), None);
+        parts.by_duration = [1.0 / own, -1.0 / duration];
+        parts.slots.clear();
+        parts.slots.resize(self.folds(), None);
         for signs in &self.cost.signs {
             let first = signs.element * (NODES - 1);
             let drive = &self.cost.drives[signs.drive];
             let powers: [f64; NODES] = std::array::from_fn(|i| drive.power(self.linearized(first + i), signs.side));
-            let slots = &mut parts[2 * (signs.element * drives + signs.drive)..][..2];
+            let slots = &mut parts.slots[2 * (signs.element * drives + signs.drive)..][..2];
             for (slot, sign) in slots.iter_mut().zip([1.0, -1.0]) {
                 let whole = &self.mesh.lobatto.weights;
                 let weights = std::array::from_fn(|i| 0.5 * scale * (signs.weights[i] + sign * whole[i]));
                 let value = dot(&weights, &powers);
-                let by_duration = [1.0 / own, -1.0 / duration];
-                let part = Part { drive: signs.drive, first, side: signs.side, weights, value, by_duration };
+                let part = Part { drive: signs.drive, first, side: signs.side, weights, value };
                 *slot = (value > 0.0).then_some(part);
             }
         }
@@ -64,7 +71,7 @@ impl Phase {
         let earlier = later.checked_sub(1).filter(|_| node.is_multiple_of(NODES - 1));
         for element in earlier.into_iter().chain([later]).filter(|element| *element < self.mesh.elements) {
             let range = element * count..(element + 1) * count;
-            for (pair, out) in self.parts[range.clone()].chunks(2).zip(out[range].chunks_mut(2)) {
+            for (pair, out) in self.parts.slots[range.clone()].chunks(2).zip(out[range].chunks_mut(2)) {
                 let Some(any) = pair.iter().flatten().next() else { continue };
                 let partials = self.cost.drives[any.drive].power_partials(self.linearized(node), any.side);
                 let along: f64 = partials.iter().map(|(quantity, partial)| partial * change[*quantity]).sum();
@@ -77,14 +84,15 @@ impl Phase {
 
     /// Adds what they have from the durations of the phase and of the cycle.
     pub(super) fn add_stretch(&self, durations: [f64; 2], out: &mut [f64]) {
-        for (part, out) in self.parts.iter().zip(out) {
-            *out += part.map_or(0.0, |part| part.value * dot(&part.by_duration, &durations));
+        let stretch = dot(&self.parts.by_duration, &durations);
+        for (part, out) in self.parts.slots.iter().zip(out) {
+            *out += part.map_or(0.0, |part| part.value * stretch);
         }
     }
 
     fn write_part(&self, d: &Description, part: &Part, row: &mut [f64]) {
         let mut local = self.no_parameters();
-        local[self.layout.duration()] = part.value * part.by_duration[0];
+        local[self.layout.duration()] = part.value * self.parts.by_duration[0];
         for (node, weight) in (part.first..).zip(part.weights) {
             let partials = self.cost.drives[part.drive].power_partials(self.linearized(node), part.side);
             self.add_partials(d, node, &partials, weight, &mut local);
@@ -117,7 +125,7 @@ impl Cycle<'_> {
             i = rest.unwrap_or(i);
             rest.is_none()
         })?;
-        Some((phase, phase.parts.get(i)?.as_ref()?))
+        Some((phase, phase.parts.slots.get(i)?.as_ref()?))
     }
 
     pub(super) fn value_of_fold(&self, i: usize) -> Option<f64> {
@@ -127,7 +135,7 @@ impl Cycle<'_> {
     pub(super) fn write_fold(&self, i: usize, row: &mut [f64]) {
         if let Some((phase, part)) = self.part(i) {
             phase.write_part(self.description(), part, row);
-            axpy(part.value * part.by_duration[1], &self.duration_gradient, row);
+            axpy(part.value * phase.parts.by_duration[1], &self.duration_gradient, row);
         }
     }
 }

@@ -4,7 +4,7 @@ use super::Variables;
 use super::by_theta::ByTheta;
 use super::crossing::Crossing;
 use super::dip::{Dip, Lowest};
-use super::fold::Part;
+use super::fold::Parts;
 use crate::constraints::{ImpactConstraints, PathConstraint, path_constraints};
 use crate::cost::{Integral, Partials};
 use crate::flow::{Fall, Flow, Layout, Mesh, Undefined};
@@ -30,7 +30,7 @@ pub struct Phase {
     pub parameters: Vec<f64>,
     pub cost: Integral,
     /// Of the criterion at the linearized point, by element and joint, done and taken.
-    pub parts: Vec<Option<Part>>,
+    pub parts: Parts,
     /// Constraints at its instants.
     pub path: Vec<PathConstraint>,
     /// Constraints imposed between nodes.
@@ -91,7 +91,7 @@ impl Phase {
             layout,
             parameters: z(layout.len()),
             cost: Integral::new(d, mode, &mesh),
-            parts: Vec::new(),
+            parts: Parts::default(),
             path: path_constraints(d, k),
             dips: Vec::new(),
             still: Vec::new(),

@@ -443,7 +443,7 @@ impl Problem for Cycle<'_> {
             let mut dips = SmallVec::<[f64; 16]>::from_elem(0.0, p.dips.len());
             change.resize(p.instants.quantities.len(), 0.0);
             let mut slots = out[rows.path.clone()].iter_mut();
-            let (parts, rest) = folds.split_at_mut(p.parts.len().min(folds.len()));
+            let (parts, rest) = folds.split_at_mut(p.folds().min(folds.len()));
             folds = rest;
             for node in 0..p.mesh.nodes.len() {
                 p.instants.chain(d, &p.flow, node).push(&local, &mut state);

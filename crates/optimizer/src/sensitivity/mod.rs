@@ -50,6 +50,16 @@ pub struct Sensitivity {
     pub elasticity: f64,
 }
 
+impl Sensitivity {
+    /// Beyond this elasticity the optimum stands at a corner, a leg stretched or folded to the last, say.
+    const STEEP: f64 = 1e3;
+
+    /// Whether the slope is that of a point alone: too steep for advice.
+    pub fn is_steep(&self) -> bool {
+        self.elasticity.abs() > Self::STEEP
+    }
+}
+
 /// Why there are no sensitivities.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Unknown {
