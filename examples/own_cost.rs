@@ -6,7 +6,7 @@ use piaffe::gaits::trot::Trot;
 use piaffe::motion::Criterion;
 use piaffe::search::local::options;
 use piaffe::search::multi_start::start;
-use piaffe::sqp::{Control, Objective, Redirected, minimize};
+use piaffe::sqp::{Control, Objective, Own, Redirected, minimize};
 
 /// `weight · (T − wanted)²` on top. T is the last variable of a mirrored gait.
 struct Pace {
@@ -29,8 +29,8 @@ impl Objective for Pace {
         gradient[x.len() - 1] += 2.0 * self.weight * self.gap(x);
     }
 
-    fn hessian(&self, _: &[f64], own: &mut dyn FnMut(&mut [f64]) -> bool, hessian: &mut [f64]) -> bool {
-        let exact = own(hessian);
+    fn hessian(&self, _: &[f64], own: &mut Own, hessian: &mut [f64]) -> bool {
+        let exact = own.lagrangian(hessian);
         hessian[hessian.len() - 1] += 2.0 * self.weight;
         exact
     }

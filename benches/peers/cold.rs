@@ -1,7 +1,7 @@
 //! One cold optimization per line of input, for `run.py`: the same start and the same problem as for others.
 //!
-//! Reads lines `GAIT CRITERION SPEED`, answers each with a line of JSON: the numbers of the gait, the
-//! default walk as a start, and the time and cost of one optimization from it, receipt included.
+//! Reads lines `GAIT CRITERION SPEED [START]`, answers each with a line of JSON: the numbers of the gait, the
+//! walk that it starts from (the first without START), and the time and cost of one optimization from it, receipt included.
 
 use piaffe::cycle::Cycle;
 use piaffe::gaits::GAITS;
@@ -20,20 +20,24 @@ fn main() {
     for line in std::io::stdin().lock().lines().map_while(Result::ok) {
         match answer(&line) {
             Some(answer) => println!("{answer}"),
-            None => println!("{}", json!({"error": format!("`{line}` is not GAIT CRITERION SPEED")})),
+            None => println!("{}", json!({"error": format!("`{line}` is not GAIT CRITERION SPEED [START]")})),
         }
     }
 }
 
 fn answer(line: &str) -> Option<Value> {
     let words: Vec<&str> = line.split_whitespace().collect();
-    let [gait, criterion, speed] = words[..] else { return None };
+    let (gait, criterion, speed, index) = match words[..] {
+        [gait, criterion, speed] => (gait, criterion, speed, 0),
+        [gait, criterion, speed, index] => (gait, criterion, speed, index.parse().ok()?),
+        _ => return None,
+    };
     let gait = GAITS.iter().copied().find(|g| g.description().gait == gait)?;
     let criterion = Criterion::ALL.into_iter().find(|c| c.name() == criterion)?;
     let speed: f64 = speed.parse().ok()?;
 
     let started = Instant::now();
-    let theta = start(gait, criterion, speed, 1, 0);
+    let theta = start(gait, criterion, speed, 1, index);
     let local = Task { gait, criterion, speed }.descend(&theta, &mut |_| Control::Continue);
     let receipt = verify(gait.description(), &local.motion, speed, GRID);
     let seconds = started.elapsed().as_secs_f64();

@@ -1,15 +1,17 @@
-"""Whole optimizations beside CasADi + Ipopt: the same robot, start, problem and machine, in turns.
+"""Whole optimizations beside CasADi + Ipopt: the same robot, starts, problem and machine, in turns.
 
-    python3 benches/peers/run.py [--rounds 3] [--speed 0.6] [--keep DIR]
+    python3 benches/peers/run.py [--starts 8] [--rounds 3] [--speed 0.6] [--keep DIR] [--vm]
 
 Needs cargo, a C compiler and Python 3; makes a virtual environment with casadi, numpy and scipy where they are missing.
-CasADi evaluates in its virtual machine and as compiled C; the ratio is to the faster of the two. Times are medians of
-one cold optimization each, from the same walk, without building or compiling (half an hour for all of the C, kept
-with --keep); processor time of one thread, all on one core (where the system can hold a program to one), so that neither other work
+CasADi evaluates as compiled C (half an hour for all of it, kept with --keep), with --vm in its virtual machine, which is slower.
+Each start is a walk drawn from geometry and a seed, the same for both. A time is the median of `rounds` cold optimizations,
+processor time of one thread, all on one core (where the system can hold a program to one), so that neither other work
 on the machine nor differences between its cores matter much (wall time where there is no /proc).
 Ours includes the receipt. Costs differ a little: 43 nodes there, constraints between the nodes and exact |power| here.
 """
 import argparse
+import functools
+import itertools
 import json
 import os
 import statistics
@@ -22,6 +24,8 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
+# Costs that differ by less than this share are of one optimum.
+SAME = 1e-2
 GAITS, CRITERIA = ("trot", "amble", "curvet"), ("energy", "torque")
 
 
@@ -50,10 +54,10 @@ class Ours:
         self.process = subprocess.Popen([target / "release" / "examples" / "cold"], text=True, stdin=subprocess.PIPE,
                                         stdout=subprocess.PIPE)
 
-    def ask(self, gait, criterion, speed):
+    def ask(self, gait, criterion, speed, start):
         """The answer, with its processor time in seconds."""
         before = self.busy()
-        print(gait, criterion, speed, file=self.process.stdin, flush=True)
+        print(gait, criterion, speed, start, file=self.process.stdin, flush=True)
         answer = json.loads(self.process.stdout.readline())
         if "error" in answer:
             sys.exit(answer["error"])
@@ -74,51 +78,62 @@ def hold_to_one_core(other):
             os.sched_setaffinity(pid, {core})
 
 
+def table(tries, starts):
+    """Lines of a Markdown table. `tries`: of each problem and start ((seconds, cost) of ours, of theirs), cost None without optimum."""
+    side = f"ms | least | found from, of {starts}"
+    yield f"| | piaffe, {side} | CasADi, {side} | ratio, median (range) | ms per start that leads to the least |"
+    yield "|---|" + "---:|" * 8
+    for name, runs in tries.items():
+        cells, per_optimum = [], []
+        for side in zip(*runs):
+            seconds, costs = zip(*side)
+            least = min((cost for cost in costs if cost is not None), default=None)
+            count = sum(cost is not None and cost <= (1 + SAME) * least for cost in costs)
+            cells += [f"{1e3 * statistics.median(seconds):.3g}", f"{least:.4f}" if count else "–", str(count)]
+            per_optimum.append(f"{1e3 * sum(seconds) / count:.0f}" if count else "–")
+        ratios = sorted(theirs / ours for (ours, _), (theirs, _) in runs)
+        ratio = f"{statistics.median(ratios):.0f} ({ratios[0]:.0f} to {ratios[-1]:.0f})"
+        yield f"| {' | '.join([name, *cells, ratio, ' and '.join(per_optimum)])} |"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--starts", type=int, default=8)
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--speed", type=float, default=0.6)
     parser.add_argument("--keep", help="folder for the C code, kept and used again")
+    parser.add_argument("--vm", action="store_true", help="no C: CasADi's virtual machine")
     arguments = parser.parse_args()
     with_packages()
     os.environ["OMP_NUM_THREADS"] = "1"
     from model import Model
     from program import Program
 
-    ours, points = Ours(), []
+    ours = Ours()
     hold_to_one_core(ours.process.pid)
     folder = Path(arguments.keep or tempfile.mkdtemp(prefix="piaffe-peers-")).resolve()
-    for gait in GAITS:
-        for criterion in CRITERIA:
-            first, _ = ours.ask(gait, criterion, arguments.speed)
-            program = Program(Model(first["description"]), criterion == "energy", arguments.speed)
-            print(f"building {gait} {criterion}: {program.size} variables, {len(program.lower)} rows", file=sys.stderr)
-            solvers = {"vm": program.solver(None), "C": program.solver(folder / f"{gait}-{criterion}")}
-            points.append((gait, criterion, program.arguments(first["start"]), solvers))
-
-    times, costs, failed = {}, {}, set()
-    for _ in range(arguments.rounds):
-        for gait, criterion, given, solvers in points:
-            answer, seconds = ours.ask(gait, criterion, arguments.speed)
-            times.setdefault((gait, criterion, "ours"), []).append(seconds)
-            costs[gait, criterion, "ours"] = answer["cost"]
-            for name, solver in solvers.items():
+    tries = {}
+    for gait, criterion in itertools.product(GAITS, CRITERIA):
+        ask = functools.partial(ours.ask, gait, criterion, arguments.speed)
+        program = Program(Model(ask(0)[0]["description"]), criterion == "energy", arguments.speed)
+        print(f"building {gait} {criterion}: {program.size} variables, {len(program.lower)} rows", file=sys.stderr)
+        solver = program.solver(None if arguments.vm else folder / f"{gait}-{criterion}")
+        for start in range(arguments.starts):
+            given, own, their = program.arguments(ask(start)[0]["start"]), [], []
+            for _ in range(arguments.rounds):
+                answer, seconds = ask(start)
+                own.append(seconds)
                 started = time.process_time()
                 solution = solver(**given)
-                times.setdefault((gait, criterion, name), []).append(time.process_time() - started)
-                costs[gait, criterion, name] = float(solution["f"])
-                if not solver.stats()["success"]:
-                    failed.add((gait, criterion, name))
+                their.append(time.process_time() - started)
+            theirs = float(solution["f"]) if solver.stats()["success"] else None
+            pair = ((statistics.median(own), answer["cost"]), (statistics.median(their), theirs))
+            tries.setdefault(f"{gait}, {criterion}", []).append(pair)
+            print(f"  start {start}: {pair}", file=sys.stderr)
 
-    print(f"one cold optimization at {arguments.speed} m/s, median of {arguments.rounds}, ms of processor time; × no optimum")
-    print(f"{'':<15} {'ours':>9} {'VM':>9} {'C':>9} {'ratio':>7} {'cost ours':>11} {'theirs':>11}")
-    for gait, criterion, _, _ in points:
-        ms = {name: 1e3 * statistics.median(times[gait, criterion, name]) for name in ("ours", "vm", "C")}
-        theirs = min(("vm", "C"), key=ms.get)
-        cost = costs[gait, criterion, "ours"]
-        print(f"{gait + ' ' + criterion:<15} {ms['ours']:9.1f} {ms['vm']:9.0f} {ms['C']:9.0f} {ms[theirs] / ms['ours']:7.0f} "
-              f"{'-' if cost is None else format(cost, '.4f'):>11} {costs[gait, criterion, theirs]:11.4f}"
-              f"{' ×' if (gait, criterion, theirs) in failed else ''}")
+    print(f"Cold optimizations at {arguments.speed} m/s from {arguments.starts} starts, processor time, "
+          f"each the median of {arguments.rounds}\n")
+    print("\n".join(table(tries, arguments.starts)))
 
 
 if __name__ == "__main__":

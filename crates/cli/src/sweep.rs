@@ -108,8 +108,8 @@ fn line(
 ) -> Line {
     let mut maximum = maximum_speed(gait, &results.concat(), settings, folder);
     if let Some(maximum) = &mut maximum {
-        let known = results.iter().flatten().filter(|r| r.is_optimal()).map(|r| r.speed).fold(0.0, f64::max);
-        for (line, new) in results.iter_mut().zip(maximum.optima(gait, criteria, known, settings, folder)) {
+        let fastest = maximum.optima(gait, criteria, &results, settings, folder);
+        for (line, new) in results.iter_mut().zip(fastest) {
             line.push(new);
             line.sort_by(|a, b| a.speed.total_cmp(&b.speed));
         }

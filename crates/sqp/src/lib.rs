@@ -69,7 +69,7 @@ mod trial;
 pub use dense::{axpy, combine, dot, multiply};
 pub use minimize::minimize;
 pub use multipliers::{Multipliers, multipliers};
-pub use objective::{Objective, Redirected};
+pub use objective::{Objective, Own, Redirected};
 pub use options::{Control, Iteration, Kind, Options, Subproblems};
 pub use problem::{Problem, Undefined, Values};
 pub use status::{Conflict, KktResidual, Solution, Status};

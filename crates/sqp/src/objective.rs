@@ -1,5 +1,6 @@
 //! The constraints of one problem with an objective of one's own.
 
+use super::dense::axpy;
 use super::problem::{Problem, Undefined, Values};
 
 /// What becomes of a problem's objective f: itself with something added, or something else.
@@ -8,8 +9,31 @@ pub trait Objective {
     fn value(&self, x: &[f64], own: f64) -> f64;
     /// Makes the objective's gradient at `x` of ∇f.
     fn gradient(&self, x: &[f64], gradient: &mut [f64]);
-    /// Writes the Hessian of the Lagrangian (see [`Problem::hessian`]); `own` writes that of the problem's own.
-    fn hessian(&self, x: &[f64], own: &mut dyn FnMut(&mut [f64]) -> bool, hessian: &mut [f64]) -> bool;
+    /// Writes the Hessian of the Lagrangian (see [`Problem::hessian`]), with what `own` knows of the problem's.
+    fn hessian(&self, x: &[f64], own: &mut Own, hessian: &mut [f64]) -> bool;
+}
+
+/// Second derivatives of the problem whose objective is replaced, at its linearized point.
+pub struct Own<'o> {
+    problem: &'o mut dyn Problem,
+    equality_multipliers: &'o [f64],
+    inequality_multipliers: &'o [f64],
+}
+
+impl Own<'_> {
+    /// Writes the Hessian of f − λᵀc_E − μᵀc_I; `false` if there is none.
+    pub fn lagrangian(&mut self, hessian: &mut [f64]) -> bool {
+        self.problem.hessian(self.equality_multipliers, self.inequality_multipliers, hessian)
+    }
+
+    /// Writes that of −λᵀc_E − μᵀc_I, as the difference of two that contain f; `false` if there is none.
+    pub fn constraints(&mut self, hessian: &mut [f64]) -> bool {
+        let [lambda, mu] = [self.equality_multipliers, self.inequality_multipliers].map(|m| vec![0.0; m.len()]);
+        let mut objective = vec![0.0; hessian.len()];
+        let exact = self.lagrangian(hessian) && self.problem.hessian(&lambda, &mu, &mut objective);
+        axpy(-1.0, &objective, hessian);
+        exact
+    }
 }
 
 /// `problem` with `objective` in place of its own.
@@ -78,7 +102,7 @@ impl<P: Problem, O: Objective> Problem for Redirected<'_, P, O> {
 
     fn hessian(&mut self, equality_multipliers: &[f64], inequality_multipliers: &[f64], hessian: &mut [f64]) -> bool {
         let Redirected { problem, objective, at } = self;
-        let mut own = |out: &mut [f64]| problem.hessian(equality_multipliers, inequality_multipliers, out);
+        let mut own = Own { problem: &mut **problem, equality_multipliers, inequality_multipliers };
         objective.hessian(at, &mut own, hessian)
     }
 }

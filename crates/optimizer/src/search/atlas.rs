@@ -15,6 +15,7 @@ use piaffe_model::motion::Criterion;
 use piaffe_model::units::Units;
 use piaffe_model::{Description, Gait};
 use piaffe_sqp::Control;
+use std::collections::HashSet;
 use std::time::Instant;
 
 /// Rounds, each down and up the speeds, in which optima are carried to their neighbours.
@@ -86,19 +87,24 @@ fn outwards(d: &Description, speeds: &[f64]) -> impl Iterator<Item = (usize, Vec
 const NEAR: usize = 3;
 
 /// How widely was searched at the nearest of these speeds, as far as there are optima without a gap.
-fn looked<'r>(nearest_first: impl Iterator<Item = &'r GaitResult>) -> Effort {
+pub(super) fn looked<'r>(nearest_first: impl Iterator<Item = &'r GaitResult>) -> Effort {
     let near = nearest_first.take(NEAR).take_while(|result| result.is_optimal());
     near.fold(Effort::default(), |sum, result| sum.with(result.search.effort))
 }
 
+/// What has been brought where, bit by bit: to which point (criterion, speed), whether it had an optimum by then, and from which variables.
+/// A second time would lead to the same.
+type Brought = HashSet<([usize; 2], bool, Vec<u64>)>;
+
 /// Carries optima to their neighbours until nothing improves.
 fn carry_on(gait: &dyn Gait, lines: &mut [Vec<GaitResult>], settings: &Settings, journal: &dyn Journal) {
     let speeds = lines.first().map_or(0, Vec::len);
+    let mut brought = Brought::new();
     for round in 0..ROUNDS {
         let mut better = false;
         for k in (0..speeds).rev().chain(0..speeds) {
             for c in 0..lines.len() {
-                let (improved, fresh) = carry(gait, lines, c, k, settings, journal);
+                let (improved, fresh) = carry(gait, lines, [c, k], &mut brought, settings, journal);
                 better |= improved;
                 if round == 0 {
                     journal.visited(gait, fresh);
@@ -174,8 +180,8 @@ pub fn search_at(
 fn carry(
     gait: &dyn Gait,
     lines: &mut [Vec<GaitResult>],
-    c: usize,
-    k: usize,
+    [c, k]: [usize; 2],
+    brought: &mut Brought,
     settings: &Settings,
     journal: &dyn Journal,
 ) -> (bool, bool) {
@@ -191,6 +197,9 @@ fn carry(
     let (mut better, mut any_fresh) = (false, false);
     for (line, at) in sources {
         let Some(theta) = lines[line][at].theta() else { continue };
+        if !brought.insert(([c, k], lines[c][k].is_optimal(), theta.iter().map(|x| x.to_bits()).collect())) {
+            continue;
+        }
         let from = lines[line][at].speed;
         let (improved, fresh) = bring(gait, &mut lines[c][k], from, &theta, settings, journal);
         better |= improved;

@@ -33,6 +33,12 @@ impl Effort {
         (n > w + 2).then(|| (w * (n - 1)) as f64 / (n - w - 2) as f64)
     }
 
+    /// How many more starts it takes at least until further ones hardly pay: so many would have to lead to optima that are known.
+    pub fn missing(&self) -> usize {
+        let more = |more: &usize| Effort { starts: self.starts + more, successes: self.successes + more, ..*self };
+        (0..).find(|count| more(count).is_enough()).unwrap_or_default()
+    }
+
     /// Together with a search whose optima are these, as far as is known.
     pub fn with(self, other: Effort) -> Effort {
         Effort {

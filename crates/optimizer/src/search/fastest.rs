@@ -1,6 +1,6 @@
 //! How fast a gait goes: the greatest speed and what ends it, and the nearest speed that works.
 
-use super::atlas::search_at;
+use super::atlas::{looked, search_at};
 use super::journal::{Journal, common, step};
 use super::local::{Conflict, Local, Task};
 use super::multi_start::{Expected, Settings, search, start};
@@ -81,18 +81,20 @@ fn climb(gait: &dyn Gait, speed: f64, from: &[f64], settings: &Settings) -> Opti
 }
 
 impl MaximumSpeed {
-    /// The optima at the greatest speed. Motions may go on where no optimum is found any more: as long as no criterion has one,
-    /// the speed is lowered towards `known`, at which some has.
+    /// The optima at the greatest speed; `results` are those at other speeds (ascending), criterion by criterion. Motions may go on where no
+    /// optimum is found any more: as long as no criterion has one, the speed is lowered towards the fastest optimum.
     pub fn optima(
         &mut self,
         gait: &dyn Gait,
         criteria: &[Criterion],
-        known: f64,
+        results: &[Vec<GaitResult>],
         settings: &Settings,
         journal: &dyn Journal,
     ) -> Vec<GaitResult> {
+        let known = results.iter().flatten().filter(|r| r.is_optimal()).map(|r| r.speed).fold(0.0, f64::max);
         while self.speed > known {
-            let optima: Vec<_> = criteria.iter().map(|c| self.optimum(gait, *c, settings, journal)).collect();
+            let at = |(c, line): (&Criterion, &Vec<GaitResult>)| self.optimum(gait, *c, line, settings, journal);
+            let optima: Vec<_> = criteria.iter().zip(results).map(at).collect();
             if optima.iter().any(GaitResult::is_optimal) {
                 return optima;
             }
@@ -107,19 +109,31 @@ impl MaximumSpeed {
         Vec::new()
     }
 
-    fn optimum(&self, gait: &dyn Gait, criterion: Criterion, settings: &Settings, journal: &dyn Journal) -> GaitResult {
+    fn optimum(
+        &self,
+        gait: &dyn Gait,
+        criterion: Criterion,
+        line: &[GaitResult],
+        settings: &Settings,
+        journal: &dyn Journal,
+    ) -> GaitResult {
         let task = Task { gait, criterion, speed: self.speed };
-        search_at(&task, settings, std::slice::from_ref(&self.theta), Expected::Nothing, journal).0
+        let slower = line.iter().rev().skip_while(|r| r.speed >= self.speed);
+        let near = slower.clone().next().filter(|r| r.is_optimal());
+        let expected = near.map_or(Expected::Nothing, |_| Expected::Theirs(looked(slower)));
+        let neighbours: Vec<Vec<f64>> =
+            near.and_then(GaitResult::theta).into_iter().chain([self.theta.clone()]).collect();
+        search_at(&task, settings, &neighbours, expected, journal).0
     }
 }
 
 /// A feasible motion at a speed, or the attempt that came closest.
 ///
-/// Feasibility does not depend on the criterion; the smooth one is quicker.
+/// Feasibility does not depend on the criterion.
 fn attempt(gait: &dyn Gait, speed: f64, from: Option<&[f64]>, settings: &Settings) -> Local {
     let task = Task { gait, criterion: Criterion::Torque, speed };
-    let of = |theta: &[f64]| task.descend(theta, &mut |_| Control::Continue);
-    let mut best = from.map(|theta| task.follow(theta, &mut |_| Control::Continue));
+    let of = |theta: &[f64]| task.nearest_motion(theta, &mut |_| Control::Continue);
+    let mut best = from.map(of);
     for k in 0..settings.starts.unwrap_or(STARTS) {
         if best.as_ref().is_some_and(|b| b.status.is_optimal()) {
             break;

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 /// Costs within this share of each other belong to one optimum, if the motions agree too.
 const SAME_COST: f64 = 1e-5;
 
-/// Starts that run side by side; what they found decides whether more do.
+/// Starts that run side by side at least; what they found decides whether more do.
 const BATCH: usize = 8;
 
 /// As many at first where they only confirm an optimum that neighbours let expect, and how many of them must end in one; or, of as many as a
@@ -25,8 +25,12 @@ const AGREEING: usize = 3;
 /// As many where neighbours let expect that there is no motion.
 const IN_VAIN: usize = 2;
 
-/// Walks drawn for each random start of the first batch.
+/// Walks drawn for each random start of the first batch, and at most for one of the later ones.
 const DRAWS: usize = 3;
+const MOST_DRAWS: usize = 8;
+
+/// Violation (scaled, summed) of a walk beyond which its descent takes long and seldom ends in an optimum.
+const HOPELESS: f64 = 30.0;
 
 /// Starts after which a search ends whatever it has found.
 const MOST: usize = 64;
@@ -119,32 +123,31 @@ pub fn search_watched(
 ) -> Found {
     let criterion = task.criterion;
     let follow = |theta: &Vec<f64>| End { local: task.follow(theta, &mut |_| watch(Event::Iterate)), informed: true };
-    let mut ends: Vec<End> = neighbours.par_iter().map(follow).collect();
+    let run = |k: usize, best: Option<&Optimum>| {
+        let end = begin(task, settings.seed, k, best, watch);
+        watch(Event::Ended(k));
+        end
+    };
     let most = settings.starts.unwrap_or(MOST).max(1);
-    let mut first = 0;
-    while first < most {
-        let so_far = collect(task, &ends);
-        let confirmed = || is_confirmed(task, expected, &so_far, &ends[..neighbours.len()]);
-        if settings.starts.is_none() && (so_far.effort.is_enough() || confirmed()) {
+    let mut next = most.min(match expected {
+        Expected::Theirs(_) if settings.starts.is_none() => CONFIRMING,
+        Expected::NoMotion if settings.starts.is_none() => IN_VAIN,
+        _ => BATCH,
+    });
+    let mut ends: Vec<End> =
+        neighbours.par_iter().map(follow).chain((0..next).into_par_iter().map(|k| run(k, None))).collect();
+    let mut found = collect(task, &ends);
+    while next < most {
+        let confirmed = || is_confirmed(task, expected, &found, &ends[..neighbours.len()]);
+        if settings.starts.is_none() && (found.effort.is_enough() || confirmed()) {
             break;
         }
-        let best = so_far.optima.first().filter(|_| first > 0);
-        let confirming = first == 0 && settings.starts.is_none();
-        let batch = match expected {
-            Expected::Theirs(_) if confirming => CONFIRMING,
-            Expected::NoMotion if confirming => IN_VAIN,
-            _ => BATCH,
-        };
-        let next = most.min(first + batch);
-        let batch = (first..next).into_par_iter().map(|k| {
-            let end = begin(task, settings.seed, k, best, watch);
-            watch(Event::Ended(k));
-            end
-        });
-        ends.par_extend(batch);
-        first = next;
+        // Side by side as many as are needed in any case.
+        let batch = next..most.min(next + BATCH.max(found.effort.missing()));
+        next = batch.end;
+        ends.par_extend(batch.into_par_iter().map(|k| run(k, found.optima.first())));
+        found = collect(task, &ends);
     }
-    let found = collect(task, &ends);
     if !found.optima.is_empty() {
         return found;
     }
@@ -201,17 +204,27 @@ pub fn start(gait: &dyn Gait, criterion: Criterion, speed: f64, seed: u64, k: us
         return theta(&walk(gait, &Plan::default_for(gait.description()), speed));
     }
     let mut rng = stream(seed, k);
-    // Of a few walks, the one that comes closest to satisfying the constraints is the safest start. But the safest lead to the
-    // same few optima, so later starts take what comes.
-    let draws = if k < BATCH { DRAWS } else { 1 };
     let mut cycle = Cycle::new(gait, criterion, speed);
     let mut values = Values::zeros(cycle.equalities(), cycle.inequalities());
-    let drawn = (0..draws).map(|_| {
+    let mut draw = || {
         let theta = theta(&walk(gait, &Plan::random(gait, &mut rng), speed));
         let violation = cycle.evaluate(&theta, &mut values).map_or(f64::INFINITY, |()| values.violation());
         (violation, theta)
-    });
-    drawn.min_by(|a, b| a.0.total_cmp(&b.0)).map_or_else(Vec::new, |(_, theta)| theta)
+    };
+    // Of a few walks, the one that comes closest to satisfying the constraints is the safest start. But the safest lead to the
+    // same few optima, so later starts take what comes, unless it is hopeless.
+    let (draws, good) = if k < BATCH { (DRAWS, 0.0) } else { (MOST_DRAWS, HOPELESS) };
+    let mut best = draw();
+    for _ in 1..draws {
+        if best.0 <= good {
+            break;
+        }
+        let other = draw();
+        if other.0 < best.0 {
+            best = other;
+        }
+    }
+    best.1
 }
 
 /// A random motion near `theta`: every variable moves by up to its natural size.

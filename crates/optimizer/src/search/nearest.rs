@@ -3,10 +3,10 @@
 //! A walk drawn from geometry knows nothing of forces. Descending from it at once lets the criterion pull
 //! while hardly a constraint holds, and the search ends in corners from which it must find back. So the
 //! walk is first moved as little as possible, in units of the variables' natural sizes, until it
-//! almost is a motion: a few steps of Gauss and Newton, which need no second derivatives.
+//! almost is a motion: a few steps suffice for that.
 
 use crate::cycle::Cycle;
-use piaffe_sqp::{Control, Iteration, Objective, Options, Redirected, Solution, minimize};
+use piaffe_sqp::{Control, Iteration, Objective, Options, Own, Redirected, Solution, minimize};
 
 /// Violation (scaled) that is left to the descent.
 const VIOLATION: f64 = 0.05;
@@ -55,12 +55,11 @@ impl Objective for Distance {
         }
     }
 
-    /// Of the distance alone.
-    fn hessian(&self, _: &[f64], _: &mut dyn FnMut(&mut [f64]) -> bool, hessian: &mut [f64]) -> bool {
-        hessian.fill(0.0);
+    fn hessian(&self, _: &[f64], own: &mut Own, hessian: &mut [f64]) -> bool {
+        let exact = own.constraints(hessian);
         for (diagonal, weight) in hessian.iter_mut().step_by(self.weights.len() + 1).zip(&self.weights) {
-            *diagonal = *weight;
+            *diagonal += *weight;
         }
-        true
+        exact
     }
 }
