@@ -25,6 +25,8 @@ struct Record {
 
 /// Costs up to this share above the record meet it.
 const MET: f64 = 1.002;
+/// The same for the [`rare`] one: between its nodes a knee is 0.004 rad beyond its stop. Kept within, the same motion costs 0.29 % more.
+const MET_WITHIN_STOPS: f64 = 1.003;
 
 fn records(wanted: impl Fn(&Record) -> bool) -> Vec<Record> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/best_known.json");
@@ -58,7 +60,7 @@ fn meet(record: &Record) -> Result<(), String> {
         let Record { robot, gait, criterion, speed, cost } = record;
         let name = format!("{robot} {gait}, {} at {speed} m/s", criterion.name());
         println!("{name:<36} {best:10.4} of {cost:10.4}: {:.4}, {starts} starts", best / cost);
-        if best <= MET * cost {
+        if best <= cost * if rare(record) { MET_WITHIN_STOPS } else { MET } {
             return Ok(());
         }
     }

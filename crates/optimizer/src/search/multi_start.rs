@@ -15,8 +15,9 @@ use rayon::prelude::*;
 /// Costs within this share of each other belong to one optimum, if the motions agree too.
 const SAME_COST: f64 = 1e-5;
 
-/// Starts that run side by side at least; what they found decides whether more do.
+/// Starts that run side by side, at least and at most; what they found decides whether more do.
 const BATCH: usize = 8;
+const WIDEST: usize = 16;
 
 /// As many at first where they only confirm an optimum that neighbours let expect, and how many of them must end in one; or, of as many as a
 /// search takes at least, in the best of several.
@@ -30,7 +31,7 @@ const DRAWS: usize = 3;
 const MOST_DRAWS: usize = 8;
 
 /// Violation (scaled, summed) of a walk beyond which its descent takes long and seldom ends in an optimum.
-const HOPELESS: f64 = 30.0;
+const HOPELESS: f64 = 300.0;
 
 /// Starts after which a search ends whatever it has found.
 const MOST: usize = 64;
@@ -143,7 +144,7 @@ pub fn search_watched(
             break;
         }
         // Side by side as many as are needed in any case.
-        let batch = next..most.min(next + BATCH.max(found.effort.missing()));
+        let batch = next..most.min(next + found.effort.missing().clamp(BATCH, WIDEST));
         next = batch.end;
         ends.par_extend(batch.into_par_iter().map(|k| run(k, found.optima.first())));
         found = collect(task, &ends);
