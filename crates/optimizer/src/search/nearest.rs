@@ -3,7 +3,8 @@
 //! A walk drawn from geometry knows nothing of forces. Descending from it at once lets the criterion pull
 //! while hardly a constraint holds, and the search ends in corners from which it must find back. So the
 //! walk is first moved as little as possible, in units of the variables' natural sizes, until it
-//! almost is a motion: a few steps suffice for that.
+//! almost is a motion: a few steps of Gauss and Newton, which need no second derivatives. To come all the way, or to see that there is none,
+//! takes Newton's.
 
 use crate::cycle::Cycle;
 use piaffe_sqp::{Control, Iteration, Objective, Options, Own, Redirected, Solution, minimize};
@@ -21,7 +22,7 @@ pub fn nearest(
     observe: &mut dyn FnMut(&Iteration) -> Control,
 ) -> Solution {
     let options = Options { feasibility: VIOLATION, iteration_limit: LIMIT, ..options.clone() };
-    reach(cycle, start, &options, observe)
+    approach(cycle, start, &options, Constraints::Straight, observe)
 }
 
 /// Moves `start` until it satisfies the constraints of `cycle` to the feasibility of `options`.
@@ -31,9 +32,19 @@ pub fn reach(
     options: &Options,
     observe: &mut dyn FnMut(&Iteration) -> Control,
 ) -> Solution {
+    approach(cycle, start, options, Constraints::Curved, observe)
+}
+
+fn approach(
+    cycle: &mut Cycle,
+    start: &[f64],
+    options: &Options,
+    constraints: Constraints,
+    observe: &mut dyn FnMut(&Iteration) -> Control,
+) -> Solution {
     let weights = cycle.scale().iter().map(|s| 1.0 / (s * s)).collect();
     let options = Options { tolerance: f64::INFINITY, ..options.clone() };
-    let distance = Distance { from: start.to_vec(), weights };
+    let distance = Distance { from: start.to_vec(), weights, constraints };
     minimize(&mut Redirected::new(cycle, distance), start, &options, observe)
 }
 
@@ -41,6 +52,14 @@ pub fn reach(
 struct Distance {
     from: Vec<f64>,
     weights: Vec<f64>,
+    constraints: Constraints,
+}
+
+/// What a step takes constraints for: their tangents, or with their curvature.
+#[derive(Clone, Copy)]
+enum Constraints {
+    Straight,
+    Curved,
 }
 
 impl Objective for Distance {
@@ -56,7 +75,13 @@ impl Objective for Distance {
     }
 
     fn hessian(&self, _: &[f64], own: &mut Own, hessian: &mut [f64]) -> bool {
-        let exact = own.constraints(hessian);
+        let exact = match self.constraints {
+            Constraints::Straight => {
+                hessian.fill(0.0);
+                true
+            }
+            Constraints::Curved => own.constraints(hessian),
+        };
         for (diagonal, weight) in hessian.iter_mut().step_by(self.weights.len() + 1).zip(&self.weights) {
             *diagonal += *weight;
         }
