@@ -134,6 +134,24 @@ fn what_was_changed_is_named() {
         let (statements, words) = changed("/variables/0/q_interior", interior);
         assert!(entries(&statements, "confirmed").is_empty() && words.contains("`q_interior`"), "{words}");
     }
+    // What is said beside the motion must not contradict what is there.
+    let open = |entry: &str| json!([{ "entry": entry, "reason": "the proof found a limit broken" }]);
+    for (pointer, value, entry) in [
+        ("/not_examined", open("certificate"), "not_examined"),
+        ("/not_examined", open("receipt"), "not_examined"),
+        ("/local_optima/0/cost", json!(1.0), "local_optima"),
+        ("/search/successes", json!(1000), "search"),
+    ] {
+        let mut result = TROT.clone();
+        result["not_examined"] = json!([]);
+        *result.pointer_mut(pointer).unwrap() = value;
+        let (code, statements, words) = audited("beside.json", &result);
+        assert!(code == 4 && entries(&statements, "not-confirmed") == [entry], "{pointer}: {words}");
+    }
+    let mut result = TROT.clone();
+    result["variables"][0]["knees"] = json!([0.1]);
+    let (code, statements, words) = audited("unknown.json", &result);
+    assert!(code == 4 && entries(&statements, "not-confirmed") == ["variables"], "{words}");
     // Another question: the motion is no optimum for it.
     let (statements, words) = changed("/criterion", json!("torque"));
     assert!(entries(&statements, "not-confirmed").iter().any(|r| r == "status"), "{words}");
@@ -284,6 +302,42 @@ fn nothing_is_shown_that_is_not_confirmed() {
             assert!(!ran.status.success() && words.contains("is not confirmed"), "{command:?}: {words}");
             assert!(ran.stdout.is_empty() && !out.exists(), "{command:?} writes all the same");
         }
+    }
+}
+
+/// An optimum that is said to be none, or none that is said to be something.
+#[test]
+fn what_is_no_optimum_is_looked_at_too() {
+    let good = path("honest.json");
+    std::fs::write(&good, TROT.to_string()).unwrap();
+    let run = piaffe(&["optimize", "trot", "--speed", "4", "--starts", "2", "--quiet", "--json", "-"]);
+    assert_eq!(run.status.code(), Some(3));
+    let none: Value = serde_json::from_slice(&run.stdout).unwrap();
+    let with = |of: &Value, entries: &[(&str, Value)]| {
+        let mut result = of.clone();
+        entries.iter().for_each(|(key, value)| result[*key] = value.clone());
+        result
+    };
+    let proven = json!("infeasible: proven for every speed above 0.1 m/s");
+    for (name, result, holds) in [
+        ("none.json", none.clone(), true),
+        ("said-none.json", with(&TROT, &[("status", json!("infeasible")), ("message", proven)]), false),
+        ("said-failed.json", with(&TROT, &[("status", json!("receipt-failed")), ("cost", json!(5.0))]), false),
+        ("backwards.json", with(&none, &[("speed", json!(-4.0))]), false),
+        ("priced.json", with(&none, &[("cost", json!(5.0))]), false),
+        ("found.json", with(&none, &[("local_optima", TROT["local_optima"].clone())]), false),
+    ] {
+        let file = path(name);
+        std::fs::write(&file, result.to_string()).unwrap();
+        let [good, file] = [&good, &file].map(|file| file.to_str().unwrap());
+        assert_eq!(piaffe(&["verify", file]).status.code() == Some(0), holds, "{name}");
+        let diff = piaffe(&["diff", good, file]);
+        assert_eq!(diff.status.success(), holds, "{name}: {}", String::from_utf8_lossy(&diff.stderr));
+        let out = path("beside");
+        assert!(piaffe(&["report", good, file, "--out", out.to_str().unwrap()]).status.success());
+        let page = std::fs::read_to_string(out.join("index.html")).unwrap();
+        assert_eq!(page.contains("One result could not be confirmed"), !holds, "{name}");
+        assert_eq!(page.contains("One search found no optimum, by its own account"), holds, "{name}");
     }
 }
 

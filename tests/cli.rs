@@ -95,6 +95,35 @@ fn bad_input_is_named_with_its_place() {
     assert_eq!(out.status.code(), Some(2));
 }
 
+/// An option that would do nothing is refused, and not offered.
+#[test]
+fn options_mean_something_or_are_refused() {
+    let changes = ["--set", "links.thigh.mass=1.2"];
+    let robot = ["--robot", "model-spec"];
+    for (command, takes_robot) in [
+        (&["report", "x.json"][..], true),
+        (&["diff", "a.json", "b.json"], true),
+        (&["verify", "x.json"], true),
+        (&["export", "x.json", "--format", "csv"], true),
+        (&["lift", "x.json"], true),
+        (&["merge", "part"], false),
+        (&["check", "model-spec"], false),
+        (&["completions", "bash"], false),
+    ] {
+        let out = piaffe(&[command, &changes].concat(), "");
+        assert!(
+            out.status.code() == Some(2) && text(&out.stderr).contains("--set"),
+            "{command:?}: {}",
+            text(&out.stderr)
+        );
+        assert_eq!(piaffe(&[command, &robot].concat(), "").status.code() == Some(2), !takes_robot, "{command:?}");
+        let help = text(&piaffe(&[command[0], "--help"], "").stdout);
+        assert!(!help.contains("--set") && help.contains("--robot") == takes_robot, "{help}");
+    }
+    let help = text(&piaffe(&["optimize", "--help"], "").stdout);
+    assert!(help.contains("--set") && help.contains("--robot"), "{help}");
+}
+
 #[test]
 fn optimize_writes_json_with_a_receipt() {
     let folder = tempfile::tempdir().unwrap();

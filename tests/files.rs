@@ -173,6 +173,82 @@ fn a_target_that_is_none_is_named() {
     refused(&write_to(&folder.path().join("x".repeat(300))), "cannot write");
 }
 
+/// What a run is given to read is there afterwards, whatever it is called.
+#[test]
+fn what_was_read_is_not_written_over() {
+    let folder = tempdir().unwrap();
+    let file = folder.path().join("own.json");
+    std::fs::copy(&TROT.1, &file).unwrap();
+    let (own, by_another_way) = (file.to_str().unwrap(), folder.path().join("./own.json"));
+    for arguments in [
+        vec!["verify", own, "--json", own],
+        vec!["verify", own, "--json", by_another_way.to_str().unwrap()],
+        vec!["export", own, "--format", "json", "--out", own],
+        vec!["lift", own, "--format", "json", "--out", own],
+        vec!["diff", TROT.1.to_str().unwrap(), own, "--json", own],
+    ] {
+        refused(&piaffe(&arguments), "this is what was read: write to another file");
+        assert_eq!(std::fs::read(&file).unwrap(), std::fs::read(&TROT.1).unwrap(), "{arguments:?}");
+    }
+    let robot = folder.path().join("dog");
+    copy(Path::new("model-spec"), &robot);
+    let target = robot.join("robot.toml");
+    let before = std::fs::read(&target).unwrap();
+    let (robot, target) = (robot.to_str().unwrap(), target.to_str().unwrap());
+    refused(&piaffe(&["check", robot, "--svg", target]), "this is what was read");
+    refused(
+        &piaffe(&["optimize", "trot", "--speed", "0.6", "--robot", robot, "--json", target]),
+        "this is what was read",
+    );
+    assert_eq!(std::fs::read(target).unwrap(), before);
+}
+
+/// What was found is kept, whatever becomes of the words about it.
+#[cfg(target_os = "linux")]
+#[test]
+fn results_are_written_where_words_cannot_be() {
+    let folder = tempdir().unwrap();
+    let full = || std::fs::File::options().write(true).open("/dev/full").unwrap();
+    let run = |arguments: &[&str]| {
+        let mut command = Command::new(PIAFFE);
+        command.args(arguments).current_dir(folder.path()).stdout(full()).output().unwrap()
+    };
+    let trot = TROT.1.to_str().unwrap();
+    let optimize = ["optimize", "trot", "--speed", "0.6", "--starts", "1", "--examine", "none", "--json", "new.json"];
+    for (arguments, written) in [
+        (&optimize[..], "new.json"),
+        (&["verify", trot, "--json", "verdicts.json"], "verdicts.json"),
+        (&["diff", trot, trot, "--json", "difference.json"], "difference.json"),
+        (&["study", "trot", "--speed", "0.6", "--criterion", "torque"], "study/study.html"),
+    ] {
+        refused(&run(arguments), "cannot write to standard output");
+        assert!(folder.path().join(written).exists(), "{arguments:?}");
+    }
+}
+
+#[test]
+fn hidden_files_are_nobodys_gaits_and_devices_are_no_specifications() {
+    let folder = tempdir().unwrap();
+    let robot = folder.path().join("dog");
+    copy(Path::new("model-spec"), &robot);
+    std::fs::write(robot.join("gaits/.#trot.toml"), "an editor's lock").unwrap();
+    let told = text(&piaffe_on(&["check"], &robot).stdout);
+    assert!(told.contains("It builds."), "{told}");
+    let [toml, gait] = [robot.join("robot.toml"), robot.join("gaits/trot.toml")];
+    let [of_robot, of_gait] = [&toml, &gait].map(|file| std::fs::read_to_string(file).unwrap());
+    std::fs::write(&toml, of_robot.replacen("gravity", "grvity", 1)).unwrap();
+    std::fs::write(&gait, of_gait.replacen("friction", "frction", 1)).unwrap();
+    let out = piaffe_on(&["check"], &robot);
+    refused(&out, "unknown key `grvity`");
+    refused(&out, "unknown key `limits.frction`");
+    #[cfg(unix)]
+    {
+        std::fs::remove_file(&toml).unwrap();
+        std::os::unix::fs::symlink("/dev/zero", &toml).unwrap();
+        refused(&piaffe_on(&["check"], &robot), "it has more than");
+    }
+}
+
 /// An optimum, and its folder.
 static TROT: LazyLock<(TempDir, PathBuf, Value)> = LazyLock::new(|| {
     let folder = tempdir().unwrap();
@@ -239,6 +315,16 @@ fn a_file_is_taken_for_what_it_is() {
     for (name, value) in [("empty.json", json!([])), ("number.json", json!(1)), ("list.json", json!([1, 2]))] {
         refused(&piaffe(&["verify", &saved(folder.path(), name, &value)]), "no result");
     }
+
+    // No key stands twice, wherever it is; what begins a text is not part of it.
+    let text_of = std::fs::read_to_string(file).unwrap();
+    let twice = text_of.replacen("\"cost\":", "\"cost\": 1.0, \"cost\":", 1);
+    for (name, text) in [("twice.json", twice.clone()), ("twices.json", format!("[{twice}]"))] {
+        std::fs::write(folder.path().join(name), text).unwrap();
+        refused(&piaffe_on(&["verify"], &folder.path().join(name)), "duplicate field `cost`");
+    }
+    std::fs::write(folder.path().join("marked.json"), format!("\u{feff}{text_of}")).unwrap();
+    assert!(piaffe_on(&["verify"], &folder.path().join("marked.json")).status.success());
 
     // What cannot be read does not keep the rest from being checked, and is not forgotten.
     let out =

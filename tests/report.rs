@@ -232,7 +232,7 @@ fn what_cannot_be_shown_is_said() {
     assert!(attempt(&unknown).contains("no gait `gallop`"));
     let mut failed = good;
     failed["status"] = "infeasible".into();
-    assert!(attempt(&failed).contains("no optimum"));
+    assert!(attempt(&failed).contains("is not confirmed"));
 }
 
 #[test]

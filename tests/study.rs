@@ -104,6 +104,19 @@ fn parts_interruptions_and_threads_change_no_byte() {
     let cut: Vec<&str> = journal.lines().skip(1).collect();
     std::fs::write(at("part2").join("journal.jsonl"), cut.join("\n") + "\n").unwrap();
     fails(folder.path(), "merge part1 part2 part3 --out other", &["part2 lacks 1 rows"]);
+    std::fs::write(at("part2").join("journal.jsonl"), journal.replacen("\"point\":", "\"point\":1", 1)).unwrap();
+    fails(
+        folder.path(),
+        "merge part1 part2 part3 --out other",
+        &["changed since it was written", "part2 lacks 1 rows"],
+    );
+    std::fs::write(at("part2").join("journal.jsonl"), journal).unwrap();
+    fails(folder.path(), "merge part1 part2 part3 --out part1", &["this is what was read: write to another file"]);
+    let asked = std::fs::read_to_string(at("part2").join("study.json")).unwrap();
+    let none = asked.replacen("\"count\": 3", "\"count\": 0", 1);
+    assert_ne!(asked, none);
+    std::fs::write(at("part2").join("study.json"), none).unwrap();
+    fails(folder.path(), "merge part1 part2 part3 --out other", &["there is no part 2 of 0"]);
 }
 
 #[test]
@@ -162,6 +175,23 @@ fn everything_wrong_with_a_question_is_told_before_anything_is_computed() {
     fails(folder.path(), &format!("study trot --speed -1 --robot {SHIPPED}"), &["-1", "--speed", "positive"]);
     let asked = format!("optimize trot --speed 0.6 --set links.thigh.mas=1 --set limits.frictoin=3 --robot {SHIPPED}");
     fails(folder.path(), &asked, &["did you mean `links.thigh.mass`", "did you mean `limits.friction`"]);
+    let asked = format!("optimize trot --speed 0.6 --set links.thigh.mas=1 --set links.shin.mass=-1 --robot {SHIPPED}");
+    fails(folder.path(), &asked, &["did you mean `links.thigh.mass`", "`links.shin.mass` must be greater than 0"]);
+    // Of two things that a number is to be, neither is dropped in silence.
+    let vary = "--vary links.thigh.mass=1,2 --vary links.{thigh,shin}.mass=1.5";
+    fails(
+        folder.path(),
+        &format!("study trot --speed 0.6 {vary} --robot {SHIPPED}"),
+        &["links.thigh.mass is varied twice"],
+    );
+    for (varied, also) in [
+        ("links.platform.mass", "--payload 2@0,0,0"),
+        ("limits.friction", "--friction 0.5"),
+        ("gravity", "--set gravity=3.7"),
+    ] {
+        let asked = format!("study trot --speed 0.6 --vary {varied}=1,2 {also} --robot {SHIPPED}");
+        fails(folder.path(), &asked, &[varied, "is varied, and changed by an option for the robot"]);
+    }
     fails(folder.path(), &format!("{ASKED} {SHIPPED} --shard 3/2"), &["I/N"]);
 }
 

@@ -123,6 +123,12 @@ fn what_a_sweep_says_follows_from_its_results() {
             assert!(code == 1 && words.contains(&format!("sweep.json states {lie} for ")), "{place}: {words}");
         }
     }
+    // What only the search has seen is nobody's proof.
+    let mut edited = honest.clone();
+    edited["maximum_speeds"][0]["ended_by"] = serde_json::json!(["courage of the rider"]);
+    std::fs::write(&overview, edited.to_string()).unwrap();
+    let (_, words) = told("verify", std::slice::from_ref(&overview));
+    assert!(words.contains("maximum_speeds.ended_by\n    not derivable"), "{words}");
     for file in ["../trot-torque-0.6000.json", "/etc/hostname", "..", "trot-torque-0.7000.json"] {
         let mut edited = honest.clone();
         edited["points"][1]["file"] = file.into();
@@ -194,6 +200,14 @@ fn damage_is_reported_and_repaired_from_the_journal() {
     std::fs::write(&journal, format!("{}\n{{\"step\":\"cut", lines.join("\n"))).unwrap();
     let told = text(&run(folder.path(), &SMALL).stderr);
     assert!(told.contains("journal.jsonl:2: ") && !told.contains("journal.jsonl:3: "), "{told}");
+    assert_eq!(before, contents(folder.path()));
+
+    // A number that was changed is no number that was found.
+    let text_before = std::fs::read_to_string(&journal).unwrap();
+    let edited: Vec<String> = text_before.lines().map(|line| line.replacen("\"cost\":", "\"cost\":1", 1)).collect();
+    std::fs::write(&journal, edited.join("\n") + "\n").unwrap();
+    let told = text(&run(folder.path(), &SMALL).stderr);
+    assert!(told.contains(": changed since it was written"), "{told}");
     assert_eq!(before, contents(folder.path()));
 }
 

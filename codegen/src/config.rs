@@ -8,8 +8,16 @@ use crate::spec::{self, Diagnostic, Gait, Robot, Source};
 use crate::turns::in_turn;
 use crate::typeset::latex;
 use sha2::{Digest, Sha256};
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
+
+/// Names of no number that are told one by one.
+const UNKNOWN_SHOWN: usize = 10;
+
+/// No specification file is larger, in bytes; without an end, a device would fill the memory.
+const LARGEST: u64 = 1 << 24;
 
 /// What a build script asks for: a folder with a robot and its gaits, and where the generated code will live.
 ///
@@ -189,12 +197,15 @@ fn robot_files(root: &Path, folder: &Path, module: String) -> Result<RobotFiles,
     Ok(RobotFiles { module, robot: read(root, &folder.join("robot.toml"))?, gaits: files })
 }
 
-/// What is in a folder, by name.
+/// What is in a folder, by name; hidden files, such as an editor's locks, are nobody's.
 fn entries(root: &Path, folder: &Path) -> Result<Vec<PathBuf>, String> {
     let failed = |e: io::Error| format!("cannot read the folder {}: {e}", folder.display());
     let mut entries = Vec::new();
     for entry in fs::read_dir(root.join(folder)).map_err(failed)? {
-        entries.push(folder.join(entry.map_err(failed)?.file_name()));
+        let name = entry.map_err(failed)?.file_name();
+        if !name.to_string_lossy().starts_with('.') {
+            entries.push(folder.join(name));
+        }
     }
     entries.sort();
     Ok(entries)
@@ -215,13 +226,64 @@ impl RobotFiles {
     /// # Errors
     /// If there is none of this name, which there are.
     pub fn set(&mut self, name: &str, value: f64) -> Result<(), String> {
-        let names = spec::alternatives(name);
-        let first = names.first().and_then(|name| self.number(name)).unwrap_or(0.0);
-        for name in &names {
-            let opposite = self.number(name).is_some_and(|number| number * first < 0.0);
-            self.set_one(name, if opposite { -value } else { value })?;
+        self.set_all([(name, value)]).map_err(|faults| faults.join("\n"))
+    }
+
+    /// Changes several numbers at once, whatever their order.
+    ///
+    /// # Errors
+    /// All names that are none, and numbers that cannot be what is wanted of them; the others are changed all the same.
+    pub fn set_all<'n>(&mut self, numbers: impl IntoIterator<Item = (&'n str, f64)>) -> Result<(), Vec<String>> {
+        let (wanted, mut faults) = self.wanted(numbers);
+        let mut set_in = |file: &mut SpecFile, wanted: &[(&str, f64)]| match spec::set_all(&file.text, wanted) {
+            Ok((text, known)) => {
+                file.text = text;
+                known
+            }
+            Err(fault) => {
+                faults.push(fault);
+                vec![true; wanted.len()]
+            }
+        };
+        let mut rest: Vec<(&str, f64)> = wanted.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+        let in_robot = set_in(&mut self.robot, &rest);
+        rest = rest.into_iter().zip(in_robot).filter_map(|(wanted, known)| (!known).then_some(wanted)).collect();
+        let mut known = vec![false; rest.len()];
+        for gait in &mut self.gaits {
+            known.iter_mut().zip(set_in(gait, &rest)).for_each(|(any, own)| *any |= own);
         }
-        Ok(())
+        let unknown: Vec<&str> =
+            rest.iter().zip(known).filter_map(|((name, _), known)| (!known).then_some(*name)).collect();
+        faults.extend(unknown.iter().take(UNKNOWN_SHOWN).map(|name| spec::unknown(name, self.texts())));
+        if unknown.len() > UNKNOWN_SHOWN {
+            faults.push(format!("and there are no {} more of these numbers", unknown.len() - UNKNOWN_SHOWN));
+        }
+        if faults.is_empty() { Ok(()) } else { Err(faults) }
+    }
+
+    /// What single numbers are to become, and what is wrong with that.
+    fn wanted<'n>(&self, numbers: impl IntoIterator<Item = (&'n str, f64)>) -> (BTreeMap<String, f64>, Vec<String>) {
+        let old: BTreeMap<String, f64> = self.numbers().into_iter().collect();
+        let old = |name: &str| old.get(name).copied().unwrap_or(0.0);
+        let (mut wanted, mut faults) = (BTreeMap::new(), Vec::new());
+        for (name, value) in numbers {
+            if !value.is_finite() {
+                faults.push(format!("`{name}` cannot be {value}: give a number"));
+                continue;
+            }
+            let names = spec::alternatives(name);
+            let first = names.first().map_or(0.0, |name| old(name));
+            for name in names {
+                let value = if old(&name) * first < 0.0 { -value } else { value };
+                match wanted.get(&name) {
+                    Some(other) if *other != value => {
+                        faults.push(format!("`{name}` cannot be both {other} and {value}: give it once"));
+                    }
+                    _ => drop(wanted.insert(name, value)),
+                }
+            }
+        }
+        (wanted, faults)
     }
 
     /// The number of this name, in the robot's file or else in the first gait's that has it; of a name with braces the first.
@@ -235,25 +297,13 @@ impl RobotFiles {
     /// All numbers by their names, those of the robot's file first. What several gaits have is that of the first.
     pub fn numbers(&self) -> Vec<(String, f64)> {
         let texts = std::iter::once(&self.robot).chain(&self.gaits);
-        let mut known = std::collections::BTreeSet::new();
+        let mut known = BTreeSet::new();
         let all = texts.flat_map(|file| spec::numbers(&file.text)).filter(|number| known.insert(number.name.clone()));
         all.map(|number| (number.name, number.value)).collect()
     }
 
-    fn set_one(&mut self, name: &str, value: f64) -> Result<(), String> {
-        if let Some(text) = spec::set(&self.robot.text, name, value) {
-            self.robot.text = text;
-            return Ok(());
-        }
-        let mut known = false;
-        for gait in &mut self.gaits {
-            if let Some(text) = spec::set(&gait.text, name, value) {
-                (gait.text, known) = (text, true);
-            }
-        }
-        let texts = self.gaits.iter().map(|gait| gait.text.as_str());
-        let unknown = || spec::unknown(name, texts.chain([self.robot.text.as_str()]));
-        if known { Ok(()) } else { Err(unknown()) }
+    fn texts(&self) -> impl Iterator<Item = &str> {
+        self.gaits.iter().chain([&self.robot]).map(|file| file.text.as_str())
     }
 
     /// Reads a robot's folder: `robot.toml` and `gaits/*.toml`. Its module is called like the folder.
@@ -461,6 +511,7 @@ fn parse(robots: &[RobotFiles]) -> Result<Vec<Parsed<'_>>, String> {
             Ok(robot) => robot,
             Err(e) => {
                 mistakes.extend(e);
+                mistakes.extend(files.gaits.iter().flat_map(|file| spec::gait_mistakes(&file.path, &file.text)));
                 continue;
             }
         };
@@ -529,8 +580,13 @@ fn origin(files: &[&SpecFile]) -> String {
 }
 
 fn read(root: &Path, path: &Path) -> Result<SpecFile, String> {
-    let text = fs::read_to_string(root.join(path))
-        .map_err(|e| format!("cannot read the specification {}: {e}", path.display()))?;
+    let cannot = |why: &dyn std::fmt::Display| format!("cannot read the specification {}: {why}", path.display());
+    let mut text = String::new();
+    let file = fs::File::open(root.join(path)).map_err(|e| cannot(&e))?;
+    let length = file.take(LARGEST + 1).read_to_string(&mut text).map_err(|e| cannot(&e))?;
+    if length as u64 > LARGEST {
+        return Err(cannot(&format!("it has more than {} MB", LARGEST >> 20)));
+    }
     Ok(SpecFile { path: path.display().to_string(), text })
 }
 

@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import os
+import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from pathlib import Path
@@ -274,7 +275,7 @@ def _written(cell: Any) -> Any:
 
 
 class _Journal:
-    """Rows in a file, a line each behind one that names the question. A line that was cut off is not there."""
+    """Rows in a file, a line each behind one that names the question. A line that was cut off or changed is not there."""
 
     def __init__(self, path: Path, question: str) -> None:
         self._path = path
@@ -283,16 +284,28 @@ class _Journal:
         whole = [line for line in lines if line.endswith(b"\n")]
         if whole and whole[0] != self._first(question):
             raise Error(f"{path} is the journal of another study, or none: give another file, or remove it")
-        for line in whole[1:]:
-            point, cells = json.loads(line)
-            self.rows[point] = cells
-        if not whole or whole != lines:
-            path.write_bytes(b"".join(whole) or self._first(question))
+        entries = {line: entry for line in whole[1:] if (entry := self._read(line)) is not None}
+        self.rows = dict(entries.values())
+        kept = whole[:1] + list(entries)
+        if not whole or kept != lines:
+            path.write_bytes(b"".join(kept) or self._first(question))
 
     @staticmethod
     def _first(question: str) -> bytes:
         return json.dumps({"piaffe study": question}).encode() + b"\n"
 
+    @staticmethod
+    def _read(line: bytes) -> Optional[Tuple[int, Cells]]:
+        try:
+            point, cells, check = json.loads(line)
+        except ValueError:
+            return None
+        return (point, cells) if check == _check(point, cells) else None
+
     def add(self, points: List[int], rows: List[Cells]) -> None:
         with self._path.open("a", encoding="utf-8") as file:
-            file.writelines(json.dumps(entry) + "\n" for entry in zip(points, rows))
+            file.writelines(json.dumps([point, cells, _check(point, cells)]) + "\n" for point, cells in zip(points, rows))
+
+
+def _check(point: int, cells: Cells) -> int:
+    return zlib.crc32(json.dumps([point, cells]).encode())

@@ -211,9 +211,9 @@ impl Robot {
 
     /// What is wrong with these names, if they are to be those of numbers.
     fn unknown(&self, names: Vec<String>) -> Vec<String> {
-        let mut files = self.robot.files().clone();
+        let files = self.robot.files();
         // Any number will do: none is used.
-        names.iter().filter_map(|name| files.set(name, 1.0).err()).collect()
+        names.iter().filter_map(|name| files.clone().set(name, 1.0).err()).collect()
     }
 
     /// Derives a gait: 20 to 80 ms for those that are shipped.

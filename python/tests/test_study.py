@@ -181,6 +181,11 @@ def test_a_torn_journal_goes_on(quadruped: piaffe.Robot, table: str, tmp_path: P
     assert 0 < study.done < len(study)
     assert study.table().to_csv() == table
     assert ask(quadruped, journal=journal).done == len(study)
+    lines = journal.read_text().splitlines()
+    journal.write_text("\n".join([*lines[:-1], lines[-1].replace("optimal", "infeasible")]) + "\n")
+    study = ask(quadruped, journal=journal)
+    assert study.done == len(study) - 1, "a row that was changed was believed"
+    assert study.table().to_csv() == table
     with pytest.raises(piaffe.Error, match="journal of another study"):
         ask(quadruped, starts=3, journal=journal)
 

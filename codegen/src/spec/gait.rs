@@ -25,11 +25,18 @@ use super::view::View;
 /// the robot's file.
 pub fn parse_gait(path: &str, text: &str, robot: &RobotFile) -> Result<Gait, Vec<Diagnostic>> {
     let mut sink = Sink::new(Source::new(path, text));
-    let gait = read(path, text, robot, &mut sink);
+    let gait = read(path, text, Some(robot), &mut sink);
     match gait {
         Some(gait) if sink.is_empty() => Ok(gait),
         _ => Err(sink.into_sorted()),
     }
+}
+
+/// What is wrong with a gait's file whatever its robot is.
+pub fn gait_mistakes(path: &str, text: &str) -> Vec<Diagnostic> {
+    let mut sink = Sink::new(Source::new(path, text));
+    let _ = read(path, text, None, &mut sink);
+    sink.into_sorted()
 }
 
 /// A gait as written, each part with its place.
@@ -42,7 +49,8 @@ pub(super) struct RawGait {
     pub then: Option<At<Then>>,
 }
 
-fn read(path: &str, text: &str, robot: &RobotFile, sink: &mut Sink) -> Option<Gait> {
+/// Without a robot there is no gait, but mistakes in the file are told.
+fn read(path: &str, text: &str, robot: Option<&RobotFile>, sink: &mut Sink) -> Option<Gait> {
     let root = syntax::document(text, sink)?;
     let root = View::of_file(&root, &format::GAIT, sink);
     let name = name::of_gait(path, &root, sink);
@@ -69,7 +77,7 @@ fn read(path: &str, text: &str, robot: &RobotFile, sink: &mut Sink) -> Option<Ga
     let locked = if root.has("locked") { root.angles("locked", sink) } else { Some(Vec::new()) };
     let moves = coordinates::check_moves(&raw, sink);
     // From here on the robot is one without its locked joints.
-    let robot = &locked::with_locked(locked.as_deref()?, robot, sink)?;
+    let robot = &locked::with_locked(locked.as_deref()?, robot?, sink)?;
     let virtual_legs = pairing::virtual_legs(&raw, &root.key_span("virtual_legs"), robot, sink);
     let unactuated = coordinates::unactuated(&raw, virtual_legs.as_ref(), robot, sink);
     if let Some(legs) = &virtual_legs {

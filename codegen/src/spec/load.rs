@@ -14,13 +14,16 @@ pub fn load(text: &str, mass: f64, at: [f64; 3]) -> Result<String, String> {
     })?;
     let platform = &known.robot.platform;
     let body = Rigid { mass: platform.mass, com: platform.com, inertia: platform.inertia };
-    let Rigid { mass, com, inertia } = body.with(&Rigid::point(mass, at));
+    let Rigid { mass: together, com, inertia } = body.with(&Rigid::point(mass, at));
+    if !(together.is_finite() && com.iter().chain(inertia.iter().flatten()).all(|number| number.is_finite())) {
+        return Err(format!("a load of {mass:?} kg at {at:?} m is beyond all numbers: give it nearer or lighter"));
+    }
     let link = format!("links.{}", platform.name);
     let products = [inertia[1][2], inertia[2][0], inertia[0][1]].map(|moment| 0.0 - moment);
     let lists = [("com", com, ["x", "y", "z"]), ("inertia.products", products, ["yz", "zx", "xy"])];
     let moments =
         ["roll", "yaw", "pitch"].iter().enumerate().map(|(k, about)| (format!("inertia.{about}"), inertia[k][k]));
-    let mut numbers: Vec<(String, f64)> = moments.chain([("mass".to_string(), mass)]).collect();
+    let mut numbers: Vec<(String, f64)> = moments.chain([("mass".to_string(), together)]).collect();
     let mut changed = text.to_string();
     for (key, values, parts) in lists {
         let name = format!("{link}.{key}");

@@ -51,11 +51,11 @@ mod tests;
 
 pub use code::Code;
 pub use diagnostic::{Diagnostic, Label, Source, Span};
-pub use gait::parse_gait;
+pub use gait::{gait_mistakes, parse_gait};
 pub use load::load;
 pub use locked::Tilted;
 pub use name::unusable_as_folder;
 pub use robot::{RobotFile, parse_robot};
 pub use schema::{gait_schema, robot_schema};
-pub use set::{alternatives, is_duration_on_a_foot, number, numbers, set, unknown};
+pub use set::{alternatives, is_duration_on_a_foot, number, numbers, set, set_all, unknown};
 pub use types::*;

@@ -1,5 +1,6 @@
 //! What this program was built with, and what became of the files since.
 
+use super::{input, whole};
 use piaffe_codegen::RobotFiles;
 use piaffe_model::Gait;
 use sha2::{Digest, Sha256};
@@ -63,7 +64,7 @@ pub fn files_of(module: &str) -> Result<RobotFiles, String> {
     let folder = Path::new(build().folder);
     // Joining nothing would end the path in a slash.
     let folder = if module.is_empty() { folder.to_path_buf() } else { folder.join(module) };
-    Ok(RobotFiles { module: module.into(), ..RobotFiles::read(&folder)? })
+    Ok(RobotFiles { module: module.into(), ..input::robot(&folder)? })
 }
 
 /// A file of the specification that is not what it was when this program was built.
@@ -84,6 +85,7 @@ pub fn changed() -> &'static [Changed] {
 
 fn compare() -> Vec<Changed> {
     let now = files();
+    now.iter().for_each(|file| whole::protect(Path::new(file)));
     if now.is_empty() {
         return Vec::new();
     }
@@ -103,6 +105,7 @@ fn files() -> Vec<String> {
     let names = |folder: &str| -> Vec<String> {
         let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
         let mut names: Vec<String> = entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
+        names.retain(|name| !name.starts_with('.'));
         names.sort();
         names
     };

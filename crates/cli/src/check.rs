@@ -1,14 +1,14 @@
 //! `piaffe check`: what a build would say of a robot's folder, and a drawing of the robot as it stands.
 
-use super::{built, output, whole};
+use super::{built, input, output, whole};
 use anyhow::anyhow;
+use piaffe_codegen::check;
 use piaffe_codegen::spec::{parse_gait, parse_robot};
-use piaffe_codegen::{RobotFiles, check};
 use piaffe_import::standing;
 use std::path::Path;
 
 pub fn run(folder: &Path, drawing: Option<&Path>) -> anyhow::Result<bool> {
-    let mut files = RobotFiles::read(folder).map_err(|why| anyhow!("{why}"))?;
+    let mut files = input::robot(folder).map_err(|why| anyhow!("{why}"))?;
     files.module = built::module_of(folder)?;
     check(std::slice::from_ref(&files)).map_err(|why| anyhow!("this would not build\n{why}"))?;
     let robot = parse_robot(&files.robot.path, &files.robot.text).map_err(|_| anyhow!("this would not build"))?;

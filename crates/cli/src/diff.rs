@@ -13,12 +13,12 @@ const SLOPES: usize = 5;
 pub fn run(a: &Path, b: &Path, json: Option<&str>) -> anyhow::Result<bool> {
     let results = Pair { a: document::confirmed(a)?, b: document::confirmed(b)? };
     let difference = Difference::new(&results.a, &results.b);
+    if let Some(target) = json {
+        output::json_to(target, &difference)?;
+    }
     if json != Some("-") {
         let names = Pair { a: input::name(a), b: input::name(b) };
         output::quiet_when_closed(tell(&names, &results, &difference))?;
-    }
-    if let Some(target) = json {
-        output::json_to(target, &difference)?;
     }
     Ok(true)
 }
@@ -34,10 +34,15 @@ fn tell(names: &Pair<String>, results: &Pair<GaitResult>, d: &Difference) -> io:
     }
     if let (Pair { a: Some(a), b: Some(b) }, true) = (d.cost, d.criterion.a == d.criterion.b) {
         let percent = 100.0 * (b / a - 1.0);
-        let words = if percent > 0.0 { "more" } else { "less" };
-        writeln!(out, "   B costs {} % {words} than A", decimal(percent.abs(), 2))?;
+        match percent {
+            _ if a == b => writeln!(out, "   B costs as much as A")?,
+            _ if percent > 0.0 => writeln!(out, "   B costs {} % more than A", decimal(percent, 2))?,
+            _ => writeln!(out, "   B costs {} % less than A", decimal(-percent, 2))?,
+        }
     }
-    if d.numbers.is_empty() {
+    if !d.specified {
+        writeln!(out, "numbers         not known: not both say what robot they are of")?;
+    } else if d.numbers.is_empty() {
         writeln!(out, "numbers         the same in both specifications")?;
     }
     for (k, number) in d.numbers.iter().enumerate() {

@@ -1,7 +1,8 @@
 //! What a file holds: a result, several of them, or what a sweep says of its results.
 
-use super::{input, robots};
+use super::{input, robots, study};
 use anyhow::{Context, anyhow, bail};
+use piaffe_optimizer::audit::Audit;
 use piaffe_optimizer::readback::Readback;
 use piaffe_optimizer::result::GaitResult;
 use piaffe_report::overview::Overview;
@@ -68,13 +69,13 @@ pub fn read(file: &Path) -> anyhow::Result<Document> {
 ///
 /// # Errors
 /// If it cannot be read, or is not the only one.
-fn read_result(file: &Path) -> anyhow::Result<GaitResult> {
+fn read_one(file: &Path) -> anyhow::Result<Stated> {
     match read(file)? {
         Document::Sweep(sweep) => {
             bail!("{} is a sweep's overview: give one of the results beside it", sweep.name)
         }
         Document::Results(mut results) => match (results.pop(), results.len()) {
-            (Some(only), 0) => Ok(only?.result),
+            (Some(only), 0) => only,
             (_, more) => bail!("{} holds {} results: give one of them", input::name(file), more + 1),
         },
     }
@@ -85,29 +86,39 @@ fn read_result(file: &Path) -> anyhow::Result<GaitResult> {
 /// # Errors
 /// If it cannot be read, is of no gait that can be had, or states what its motion does not do.
 pub fn readback(file: &Path) -> anyhow::Result<Readback<'static>> {
-    let result = read_result(file)?;
+    let result = read_one(file)?.result;
     let gait = robots::of(&result).map_err(|why| anyhow!("{why}"))?;
     Ok(Readback::new(result, &[gait])?)
 }
 
-/// The one result in a file: of an optimum what was derived anew, of what is none what it states.
+/// The one result in a file, with its specification: of an optimum what was derived anew, of what is none what it states, if
+/// nothing refutes that.
 ///
 /// # Errors
 /// If it cannot be read, is of no gait that can be had, or states what its motion does not do.
 pub fn confirmed(file: &Path) -> anyhow::Result<GaitResult> {
-    let result = read_result(file)?;
-    if !result.is_optimal() {
-        return Ok(result);
-    }
-    let gait = robots::of(&result).map_err(|why| anyhow!("{}: {why}", input::name(file)))?;
-    Ok(Readback::new(result, &[gait])?.result)
+    let name = input::name(file);
+    let Stated { result, value, .. } = read_one(file)?;
+    let gait = robots::of(&result).map_err(|why| anyhow!("{name}: {why}"))?;
+    let confirmed = match result.is_optimal() {
+        true => Readback::new(result, &[gait])?.result,
+        false => match Audit::new(&value, &result, &[gait]).objection() {
+            Some(why) => bail!("{name} does not hold: {why}"),
+            None => result,
+        },
+    };
+    let specification = confirmed.specification.or_else(|| gait.specification().cloned());
+    Ok(GaitResult { specification, ..confirmed })
 }
 
-/// The files in a folder that may hold results: all JSON.
+/// The files in a folder that may hold results: all JSON; of a study its walks.
 ///
 /// # Errors
 /// If the folder cannot be read or has none.
 pub fn files(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
+    let walks = folder.join(study::WALKS);
+    let of_study = folder.join(study::ASKED).is_file() && walks.is_dir();
+    let folder = if of_study { walks.as_path() } else { folder };
     let cannot = || format!("cannot read the folder {}", input::name(folder));
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder).with_context(cannot)? {

@@ -1,9 +1,14 @@
 //! Text and JSON from a file or standard input, with errors that say where.
 
 use super::harmless::line;
+use super::whole;
 use anyhow::{Context, bail};
-use serde::de::DeserializeOwned;
+use piaffe_codegen::RobotFiles;
+use serde::de::{DeserializeOwned, Error, MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
 use serde_json::Value;
+use std::collections::HashSet;
+use std::fmt;
 use std::io::Read;
 use std::path::Path;
 
@@ -20,7 +25,7 @@ pub fn is_standard(file: &Path) -> bool {
     file.as_os_str() == "-"
 }
 
-/// What is in `file`, or comes from standard input for `-`.
+/// What is in `file`, or comes from standard input for `-`. From now on it is not written over.
 pub fn read(file: &Path) -> anyhow::Result<Vec<u8>> {
     let cannot = || format!("cannot read {}", name(file));
     let mut bytes = Vec::new();
@@ -33,7 +38,20 @@ pub fn read(file: &Path) -> anyhow::Result<Vec<u8>> {
     if length as u64 > LARGEST {
         bail!("{}: it has more than {} MB", cannot(), LARGEST >> 20);
     }
+    if !is_standard(file) {
+        whole::protect(file);
+    }
     Ok(bytes)
+}
+
+/// The files of a robot's folder. From now on they are not written over.
+///
+/// # Errors
+/// What is missing or cannot be read.
+pub fn robot(folder: &Path) -> Result<RobotFiles, String> {
+    let files = RobotFiles::read(folder)?;
+    std::iter::once(&files.robot).chain(&files.gaits).for_each(|file| whole::protect(Path::new(&file.path)));
+    Ok(files)
 }
 
 /// The text of `file`, or of standard input for `-`.
@@ -49,6 +67,7 @@ pub fn read_json<T: DeserializeOwned>(file: &Path) -> anyhow::Result<T> {
 /// Parses what was read from `file`, or from standard input for `-`. Texts in it are made harmless.
 pub fn parse_json<T: DeserializeOwned>(file: &Path, text: &str) -> anyhow::Result<T> {
     let name = name(file);
+    let text = text.trim_start_matches(BYTE_ORDER_MARK);
     if text.trim().is_empty() {
         bail!("{name} is empty: JSON was expected");
     }
@@ -58,11 +77,73 @@ pub fn parse_json<T: DeserializeOwned>(file: &Path, text: &str) -> anyhow::Resul
         let excerpt: String = excerpt.chars().skip(start).take(60).collect();
         anyhow::anyhow!("{name}:{}:{}: {}\n  | {}", e.line(), e.column(), line(&e.to_string()), line(&excerpt))
     };
-    // For its places in errors; what is used is read from the harmless value.
+    // These for their places in errors; what is used is read from the harmless value.
+    let Unique = serde_json::from_str(text).map_err(at)?;
     drop(serde_json::from_str::<T>(text).map_err(at)?);
     let mut value: Value = serde_json::from_str(text).map_err(at)?;
     disarm(&mut value);
     serde_json::from_value(value).with_context(|| name.clone())
+}
+
+/// Some editors begin a text with it.
+const BYTE_ORDER_MARK: char = '\u{feff}';
+
+/// JSON in which no key stands twice: who reads the first and who reads the last would read different things.
+struct Unique;
+
+impl<'de> Deserialize<'de> for Unique {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Unique, D::Error> {
+        deserializer.deserialize_any(Unique)
+    }
+}
+
+impl<'de> Visitor<'de> for Unique {
+    type Value = Unique;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("JSON")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Unique, A::Error> {
+        let mut known = HashSet::new();
+        while let Some(key) = map.next_key::<String>()? {
+            if known.contains(&key) {
+                return Err(A::Error::custom(format!("duplicate field `{key}`")));
+            }
+            known.insert(key);
+            map.next_value::<Unique>()?;
+        }
+        Ok(Unique)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Unique, A::Error> {
+        while list.next_element::<Unique>()?.is_some() {}
+        Ok(Unique)
+    }
+
+    fn visit_bool<E>(self, _: bool) -> Result<Unique, E> {
+        Ok(Unique)
+    }
+
+    fn visit_i64<E>(self, _: i64) -> Result<Unique, E> {
+        Ok(Unique)
+    }
+
+    fn visit_u64<E>(self, _: u64) -> Result<Unique, E> {
+        Ok(Unique)
+    }
+
+    fn visit_f64<E>(self, _: f64) -> Result<Unique, E> {
+        Ok(Unique)
+    }
+
+    fn visit_str<E>(self, _: &str) -> Result<Unique, E> {
+        Ok(Unique)
+    }
+
+    fn visit_unit<E>(self) -> Result<Unique, E> {
+        Ok(Unique)
+    }
 }
 
 /// The entry of a result that holds files.

@@ -1,6 +1,6 @@
 //! The folder of a sweep or a study: what was found as files, and `journal.jsonl`, a line per step that was taken.
 //!
-//! The journal is only ever appended to. An end that was cut off is dropped, a line that is damaged is
+//! The journal is only ever appended to. An end that was cut off is dropped, a line that is damaged or was changed is
 //! reported; either step is taken again. What was found with other settings stays: with these settings
 //! it serves again.
 
@@ -8,8 +8,8 @@ use super::output::{self, note};
 use super::{input, whole};
 use anyhow::{Context, bail};
 use indicatif::ProgressBar;
-use piaffe_model::Gait;
 use piaffe_model::motion::Criterion;
+use piaffe_model::{Gait, hash};
 use piaffe_optimizer::result::{GaitResult, file_name};
 use piaffe_optimizer::search::journal::Journal;
 use piaffe_optimizer::search::multi_start::Settings;
@@ -26,6 +26,25 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 struct Entry {
     step: String,
     outcome: Value,
+    /// Of the step and its outcome together.
+    #[serde(default)]
+    hash: String,
+}
+
+impl Entry {
+    fn new(step: &str, outcome: Value) -> Entry {
+        let hash = Entry::hash(step, &outcome);
+        Entry { step: step.into(), outcome, hash }
+    }
+
+    /// Whether it is as it was written. Its numbers are written with the shortest digits that are read as the same.
+    fn is_whole(&self) -> bool {
+        self.hash == Entry::hash(&self.step, &self.outcome)
+    }
+
+    fn hash(step: &str, outcome: &Value) -> String {
+        format!("{:016x}", hash(&format!("{step} {outcome}")))
+    }
 }
 
 /// Name of the journal in its folder.
@@ -119,19 +138,30 @@ impl Folder {
 /// If its journal cannot be read.
 pub fn found(folder: &Path) -> anyhow::Result<HashMap<String, Value>> {
     let name = folder.join(JOURNAL);
-    let bytes = std::fs::read(&name).with_context(|| format!("cannot read {}", input::name(&name)))?;
+    let cannot = || format!("cannot read {}", input::name(&name));
+    if name.metadata().is_ok_and(|there| !there.is_file()) {
+        bail!("{}: it is no file", cannot());
+    }
+    let bytes = std::fs::read(&name).with_context(cannot)?;
     let whole = bytes.iter().rposition(|b| *b == b'\n').map_or(0, |last| last + 1);
     Ok(entries(&name, &bytes[..whole]))
 }
 
 /// The steps of a journal with their outcomes. Damage is told.
 fn entries(name: &Path, bytes: &[u8]) -> HashMap<String, Value> {
-    let mut known = HashMap::new();
+    let (mut known, mut changed) = (HashMap::new(), Vec::new());
     for (n, line) in bytes.split(|b| *b == b'\n').enumerate().filter(|(_, line)| !line.is_empty()) {
         match serde_json::from_slice::<Entry>(line) {
-            Ok(entry) => drop(known.insert(entry.step, entry.outcome)),
+            Ok(entry) if entry.is_whole() => drop(known.insert(entry.step, entry.outcome)),
+            Ok(_) => changed.push(n + 1),
             Err(error) => note(&format!("{}:{}: {error}; this step is taken again", input::name(name), n + 1)),
         }
+    }
+    if let [first, ..] = changed[..] {
+        let (name, lines) = (input::name(name), changed.len());
+        note(&format!(
+            "{name}:{first}: changed since it was written ({lines} such lines): these steps are taken again"
+        ));
     }
     known
 }
@@ -184,7 +214,7 @@ impl Journal for Folder {
     }
 
     fn record(&self, step: &str, outcome: Value) {
-        let entry = Entry { step: step.into(), outcome };
+        let entry = Entry::new(step, outcome);
         let mut state = self.state();
         let written = serde_json::to_string(&entry).map_err(anyhow::Error::from).and_then(|line| {
             let length = state.journal.metadata()?.len();

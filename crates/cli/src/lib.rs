@@ -33,7 +33,7 @@ use asked::Asked;
 pub use built::Build;
 use clap::builder::{PossibleValuesParser, TypedValueParser, ValueParser};
 use clap::error::ErrorKind;
-use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use piaffe_codegen::Changes;
 use piaffe_interpreter::Store;
 use piaffe_model::motion::Criterion;
@@ -318,15 +318,53 @@ enum Command {
     },
 }
 
-impl Arguments {
-    /// Whether it is about no robot of the program.
-    fn is_of_no_robot(&self) -> bool {
-        matches!(
-            self.command,
-            Some(Command::Import(_) | Command::Check { .. } | Command::Completions { .. } | Command::Manual { .. })
-        )
+/// What a command is about, and with it which options beside it mean something.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Subject {
+    /// The gaits of a robot, which can be changed for this run.
+    Gaits,
+    /// Results, which carry what they are of.
+    Results,
+    /// No robot of the program.
+    Else,
+}
+
+impl Subject {
+    fn of(command: &str) -> Subject {
+        match command {
+            "export" | "lift" | "verify" | "report" | "diff" => Subject::Results,
+            "import" | "check" | "merge" | "completions" | "manual" => Subject::Else,
+            _ => Subject::Gaits,
+        }
     }
 
+    /// What is wrong with options that mean nothing here.
+    fn objection(self, robot: bool, changes: bool) -> Option<&'static str> {
+        match self {
+            Subject::Results if changes => Some(
+                "--set, limits and loads are for commands that search: results carry what they are of, and cannot be changed",
+            ),
+            Subject::Else if robot || changes => {
+                Some("--robot, --set, limits and loads are for commands about a robot's gaits and results")
+            }
+            _ => None,
+        }
+    }
+
+    /// The command without the options that mean nothing there: who uses one all the same is told so.
+    fn hide_from(self, command: clap::Command) -> clap::Command {
+        let options = Asked::augment_args(clap::Command::new("")).get_arguments().cloned().collect::<Vec<_>>();
+        let robot = Arguments::command().get_arguments().filter(|arg| arg.get_id() == "robot").cloned().collect();
+        let meaningless = match self {
+            Subject::Gaits => Vec::new(),
+            Subject::Results => options,
+            Subject::Else => [options, robot].concat(),
+        };
+        command.args(meaningless.into_iter().map(|arg: clap::Arg| arg.global(false).hide(true)))
+    }
+}
+
+impl Arguments {
     /// Says what stands behind the answer, where that is not what was built.
     fn note_changes(&self) {
         let first = || robots::keys().into_iter().flatten().filter(|key| !key.contains('/'));
@@ -348,7 +386,8 @@ impl Arguments {
 
 /// The command line itself.
 fn command() -> clap::Command {
-    with_negative_numbers(Arguments::command())
+    let own = |command: clap::Command| Subject::of(command.get_name()).hide_from(command);
+    with_negative_numbers(Arguments::command().mut_subcommands(own))
 }
 
 /// A number with a sign is a value, which can be wrong as a value, and no option that nobody knows.
@@ -360,10 +399,13 @@ fn with_negative_numbers(command: clap::Command) -> clap::Command {
     command.mut_args(of_arg).mut_subcommands(with_negative_numbers)
 }
 
-fn parse(typed: &[OsString]) -> Result<Arguments, clap::Error> {
+fn parse(typed: &[OsString]) -> Result<(Arguments, Subject), clap::Error> {
     let mut command = command();
-    let arguments = command.try_get_matches_from_mut(typed).and_then(|found| Arguments::from_arg_matches(&found));
-    arguments.map_err(|error| error.format(&mut command))
+    let read = |found: clap::ArgMatches| {
+        let subject = found.subcommand_name().map_or(Subject::Gaits, Subject::of);
+        Ok((Arguments::from_arg_matches(&found)?, subject))
+    };
+    command.try_get_matches_from_mut(typed).and_then(read).map_err(|error: clap::Error| error.format(&mut command))
 }
 
 /// What was typed. The names that a gait can have depend on the robot that is asked for: that is read first.
@@ -373,22 +415,25 @@ fn read(typed: &[OsString]) -> Result<Arguments, u8> {
         error.exit_code() as u8
     };
     let chosen = match parse(typed) {
-        Ok(first) if first.is_of_no_robot() => {
-            if first.robot.is_some() || !first.asked.changes().is_empty() {
-                let why = "--robot, --set and limits are for commands about a robot's gaits and results";
+        Ok((first, subject)) => {
+            let changes = first.asked.changes();
+            if let Some(why) = subject.objection(first.robot.is_some(), !changes.is_empty()) {
                 return Err(usage(command().error(ErrorKind::ArgumentConflict, why)));
             }
-            robots::choose_built();
-            Ok(())
+            if subject == Subject::Else {
+                robots::choose_built();
+                Ok(())
+            } else {
+                robots::choose(first.robot.as_deref(), &changes)
+            }
         }
-        Ok(first) => robots::choose(first.robot.as_deref(), &first.asked.changes()),
         Err(_) => robots::choose(None, &Changes::default()),
     };
     if let Err(error) = chosen {
         output::error(&error);
         return Err(FAILED);
     }
-    parse(typed).map_err(usage)
+    parse(typed).map(|(arguments, _)| arguments).map_err(usage)
 }
 
 /// Runs the program for the robots of `build`.
@@ -468,7 +513,7 @@ fn answer(arguments: Arguments) -> anyhow::Result<bool> {
             )
         }
         Some(Command::Diff { a, b, json }) => diff::run(&a, &b, json.as_deref()),
-        Some(Command::Study(arguments)) => study::run(arguments),
+        Some(Command::Study(study)) => study::run(study, &arguments.asked.changes()),
         Some(Command::Merge { parts, folder }) => merge::run(&parts, &folder),
     }
 }

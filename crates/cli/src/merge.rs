@@ -7,6 +7,9 @@ use piaffe_study::{Answers, Row, Shard, Study};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+/// Missing parts that are named.
+const MISSING_SHOWN: usize = 20;
+
 /// A part, and what is known of it.
 struct Part {
     name: String,
@@ -61,7 +64,7 @@ fn faults(parts: &[Part], study: &Study) -> Vec<String> {
     for other in others {
         if other.asked.question != first.asked.question {
             faults.push(format!("{} is a part of another study than {}", other.name, first.name));
-        } else if other.asked.shard.count != first.asked.shard.count {
+        } else if other.asked.shard.count() != first.asked.shard.count() {
             let (a, b) = (first.asked.shard, other.asked.shard);
             faults.push(format!(
                 "{} is part {a}, and {} part {b}: of as many parts they must be",
@@ -72,10 +75,12 @@ fn faults(parts: &[Part], study: &Study) -> Vec<String> {
     if !faults.is_empty() {
         return faults;
     }
-    let count = first.asked.shard.count;
-    let given: BTreeSet<usize> = parts.iter().map(|part| part.asked.shard.index).collect();
-    for index in (1..=count).filter(|index| !given.contains(index)) {
-        faults.push(format!("part {} is missing", Shard { index, count }));
+    let given: BTreeSet<Shard> = parts.iter().map(|part| part.asked.shard).collect();
+    let missing = first.asked.shard.count() - given.len();
+    let shown = first.asked.shard.all().filter(|shard| !given.contains(shard)).take(MISSING_SHOWN);
+    faults.extend(shown.map(|shard| format!("part {shard} is missing")));
+    if missing > MISSING_SHOWN {
+        faults.push(format!("and {} more parts are missing", missing - MISSING_SHOWN));
     }
     for (k, part) in parts.iter().enumerate() {
         let shard = part.asked.shard;

@@ -12,6 +12,7 @@ use piaffe_optimizer::search::watch::Event;
 use piaffe_sqp::Control;
 
 pub fn run(task: Task, real_legs: bool, settings: &Settings, json: Option<&str>) -> anyhow::Result<bool> {
+    output::check(json)?;
     let bar = progress(settings.starts);
     let watch = |event| {
         match event {
@@ -30,12 +31,12 @@ pub fn run(task: Task, real_legs: bool, settings: &Settings, json: Option<&str>)
         grounded = without_flights(task.gait, &result, settings);
     }
     bar.finish_and_clear();
-    if described {
-        output::quiet_when_closed(summary::print(task.gait.description(), &result, grounded.as_ref()))?;
-    }
     if let Some(target) = json {
         output::json_to(target, &result)?;
-        if target != "-" {
+    }
+    if described {
+        output::quiet_when_closed(summary::print(task.gait.description(), &result, grounded.as_ref()))?;
+        if let Some(target) = json {
             output::say!("written to {target}");
         }
     }

@@ -66,6 +66,11 @@ pub fn write_json(path: &Path, value: &impl Serialize) -> anyhow::Result<()> {
     whole::write(path, &json(value)?)
 }
 
+/// Whether there can be written to a file, before it is known what; to standard output for `-` and nowhere if there is none.
+pub fn check(target: Option<&str>) -> anyhow::Result<()> {
+    target.filter(|target| *target != "-").map_or(Ok(()), |target| whole::check(Path::new(target)))
+}
+
 /// Writes JSON to a file, or to standard output for `-`.
 pub fn json_to(target: &str, value: &impl Serialize) -> anyhow::Result<()> {
     bytes_to(target, &json(value)?)

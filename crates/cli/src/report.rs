@@ -18,10 +18,15 @@ pub fn run(paths: &[PathBuf], detail: Option<f64>, out: &Path) -> anyhow::Result
     for path in paths {
         let files = match path.is_dir() {
             // The results of a sweep are those that its overview names.
-            true if path.join(OVERVIEW).exists() => vec![path.join(OVERVIEW)],
-            true => document::files(path)?,
-            false => vec![path.clone()],
+            true if path.join(OVERVIEW).exists() => Ok(vec![path.join(OVERVIEW)]),
+            true => document::files(path),
+            false => Ok(vec![path.clone()]),
         };
+        let files = files.unwrap_or_else(|error| {
+            output::error(&error);
+            unread += 1;
+            Vec::new()
+        });
         for file in files {
             let results = match document::read(&file) {
                 Ok(Document::Results(results)) => results,
@@ -72,7 +77,7 @@ pub fn run(paths: &[PathBuf], detail: Option<f64>, out: &Path) -> anyhow::Result
     let index = write(records, extremes, detail, out)?;
     output::say!("{}", index.display());
     if unread > 0 {
-        bail!("{unread} results could not be read: the report is without them");
+        bail!("{unread} of what was given could not be read: the report is without it");
     }
     Ok(true)
 }

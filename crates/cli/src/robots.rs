@@ -4,7 +4,7 @@
 //! A result carries what its gait was derived from, and is read with that, whichever robots are here.
 
 use super::built::{self, Changed};
-use super::output;
+use super::{input, output};
 use anyhow::{Context, anyhow};
 use piaffe_codegen::{Changes, RobotFiles, SpecFile};
 use piaffe_interpreter::Robot;
@@ -62,7 +62,7 @@ pub fn choose_built() {
 }
 
 fn of_folder(folder: &Path, changes: &Changes) -> anyhow::Result<Vec<Choice>> {
-    let files = RobotFiles::read(folder).map_err(|why| anyhow!("{why}"))?;
+    let files = input::robot(folder).map_err(|why| anyhow!("{why}"))?;
     let robot = read(Ok(RobotFiles { module: String::new(), ..files }), changes).map_err(|why| anyhow!("{why}"))?;
     let origin = Origin::Files(Arc::new(Ok(robot.clone())));
     Ok(robot.gaits().into_iter().map(|key| Choice::new(key.leak(), origin.clone())).collect())
@@ -213,13 +213,21 @@ pub enum Wanted {
 }
 
 impl Wanted {
-    /// By the names that were typed.
+    /// By the names that were typed, each once.
     pub fn by(names: &[String]) -> Wanted {
-        match names {
-            [] => Wanted::Usual,
-            names if names.iter().any(|name| name == ALL) => Wanted::All,
-            names => Wanted::Named(names.to_vec()),
+        if names.is_empty() {
+            return Wanted::Usual;
         }
+        if names.iter().any(|name| name == ALL) {
+            return Wanted::All;
+        }
+        let mut different: Vec<String> = Vec::new();
+        for name in names {
+            if !different.contains(name) {
+                different.push(name.clone());
+            }
+        }
+        Wanted::Named(different)
     }
 }
 

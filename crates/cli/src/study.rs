@@ -7,6 +7,7 @@ use super::{criteria, gait_names_or_all, input, output, report, robots, sweep, w
 use anyhow::{Context, bail};
 use clap::builder::PossibleValuesParser;
 use indicatif::{ProgressBar, ProgressStyle};
+use piaffe_codegen::Changes;
 use piaffe_optimizer::search::journal::Journal;
 use piaffe_report::space::{Space, Spot};
 use piaffe_report::{Extremes, Record, Report};
@@ -70,20 +71,26 @@ pub struct Asked {
 pub const ASKED: &str = "study.json";
 
 /// The folder in it with the walks that the page shows, as results.
-const WALKS: &str = "walks";
+pub const WALKS: &str = "walks";
+
+/// The table of its rows.
+const TABLE: &str = "study.csv";
 
 /// The step of a journal that answers a point.
 pub fn step(fingerprint: &str, point: usize) -> String {
     format!("study {fingerprint} point {point}")
 }
 
-pub fn run(arguments: Arguments) -> anyhow::Result<bool> {
+/// `changes` are those that the base robot already has.
+pub fn run(arguments: Arguments, changes: &Changes) -> anyhow::Result<bool> {
     let (shard, path) = (arguments.shard, arguments.folder.clone());
-    let study = asked(arguments)?;
+    let study = asked(arguments, changes)?;
     let asked = Asked { shard, question: Question::from(&study) };
     let points = shard.points(&study);
     let folder = Folder::open(&path, progress(points.len()))?;
-    if let Ok(earlier) = input::read_json::<Asked>(&path.join(ASKED))
+    whole::check(&path.join(TABLE))?;
+    let own = std::fs::read(path.join(ASKED)).ok();
+    if let Some(earlier) = own.and_then(|text| serde_json::from_slice::<Asked>(&text).ok())
         && earlier.question.fingerprint != asked.question.fingerprint
     {
         output::note(&format!("the last study in {} was another one: all is answered anew", input::name(&path)));
@@ -99,7 +106,7 @@ pub fn run(arguments: Arguments) -> anyhow::Result<bool> {
 }
 
 /// The study that is asked for, if nothing is wrong with it.
-fn asked(arguments: Arguments) -> anyhow::Result<Study> {
+fn asked(arguments: Arguments, changes: &Changes) -> anyhow::Result<Study> {
     let Arguments { gaits, speed, criterion, real_legs, vary, sample, designs, also, starts, seed, .. } = arguments;
     let (robot, gaits) = robots::robot_of(&Wanted::by(&gaits))?;
     let wanted = |beyond: &Beyond| also.iter().any(|name| name == beyond.name());
@@ -127,11 +134,22 @@ fn asked(arguments: Arguments) -> anyhow::Result<Study> {
         search: Search { starts: starts.map(|n| n as usize), seed },
         beyond: Beyond::ALL.into_iter().filter(wanted).collect(),
     };
-    let faults: Vec<String> = unmade.into_iter().chain(study.faults()).collect();
+    let faults: Vec<String> = unmade.into_iter().chain(study.faults()).chain(twice(&study, changes)).collect();
     if !faults.is_empty() {
         bail!("this study cannot be asked:\n{}", faults.join("\n"));
     }
     Ok(study)
+}
+
+/// Numbers that are varied and changed for this run besides: of one of both nothing would be left.
+fn twice(study: &Study, changes: &Changes) -> Vec<String> {
+    let varied = study.designs.varied(&study.robot);
+    let changed = changes.names(study.robot.files());
+    let both = changed.intersection(&varied);
+    both.map(|name| {
+        format!("{name} is varied, and changed by an option for the robot (--set, a limit, a load): do one of both")
+    })
+    .collect()
 }
 
 /// The row of a point: the one that an earlier run has found, or a new one.
@@ -152,22 +170,25 @@ fn row(answers: &Answers, point: usize, question: &Question, folder: &Folder) ->
 /// Writes the rows of a study's part as tables, and of a whole study the page; tells what is best.
 pub fn write(study: &Study, shard: Shard, answers: &Answers, rows: &[Row], path: &Path) -> anyhow::Result<bool> {
     let columns = Column::all(study);
-    whole::write(&path.join("study.csv"), &table::csv(&columns, rows).context("cannot write the table")?)?;
+    whole::write(&path.join(TABLE), &table::csv(&columns, rows).context("cannot write the table")?)?;
     #[cfg(feature = "parquet")]
     whole::write(
         &path.join("study.parquet"),
         &piaffe_study::parquet(&columns, rows).context("cannot write the table")?,
     )?;
+    let shown = if shard == Shard::WHOLE { Some(page(study, answers, rows, path)?) } else { None };
     output::quiet_when_closed(tell(study, rows))?;
-    output::say!("rows in {}", path.join("study.csv").display());
-    if shard == Shard::WHOLE {
-        page(study, answers, rows, path)?;
+    output::say!("rows in {}", path.join(TABLE).display());
+    match shown {
+        Some(Some(page)) => output::say!("To be seen in {}", page.display()),
+        Some(None) => output::say!("no page: there is no walk to show"),
+        None => {}
     }
     Ok(rows.iter().any(|row| row.optimum.is_some()))
 }
 
-/// Writes the page of a study, with the walks that are worth showing as results of their own.
-fn page(study: &Study, answers: &Answers, rows: &[Row], path: &Path) -> anyhow::Result<()> {
+/// Writes the page of a study, with the walks that are worth showing as results of their own; tells where it is, if there are any.
+fn page(study: &Study, answers: &Answers, rows: &[Row], path: &Path) -> anyhow::Result<Option<PathBuf>> {
     let spot = |row: &Row| Spot {
         point: row.point,
         design: row.design,
@@ -193,12 +214,10 @@ fn page(study: &Study, answers: &Answers, rows: &[Row], path: &Path) -> anyhow::
         records.push(Record::issued(result.clone(), gait).named(Some(design)));
     }
     if !records.iter().any(Record::is_confirmed) {
-        output::say!("no page: there is no walk to show");
-        return Ok(());
+        return Ok(None);
     }
     let report = Report::new(records, Extremes::default(), None)?.of_space(space);
-    output::say!("To be seen in {}", report::write_report(&report, path)?.display());
-    Ok(())
+    report::write_report(&report, path).map(Some)
 }
 
 /// What became of a point, in a few words.

@@ -77,12 +77,12 @@ pub fn run(
     }
     let overview = Overview::new(&all().cloned().collect::<Vec<_>>(), &ends(&lines));
     output::write_json(&path.join(OVERVIEW), &overview)?;
+    let any = all().any(GaitResult::is_optimal);
+    let records = || lines.iter().flat_map(Line::records).collect();
+    let page = any.then(|| report::write(records(), overview.clone().extremes(), None, path)).transpose()?;
     output::quiet_when_closed(tell(&lines, criteria, speeds, &overview))?;
     output::say!("results in {}", path.display());
-    let any = all().any(GaitResult::is_optimal);
-    if any {
-        let records = lines.iter().flat_map(Line::records).collect();
-        let page = report::write(records, overview.extremes(), None, path)?;
+    if let Some(page) = page {
         output::say!("To be seen in {}", page.display());
     }
     Ok(any)

@@ -27,14 +27,16 @@ struct Entry {
 /// Checks results and sweeps' overviews; true if all that they state about their motions was confirmed. One that cannot be
 /// read does not keep the others from being checked.
 pub fn run(files: &[PathBuf], json: Option<&str>) -> anyhow::Result<bool> {
+    output::check(json)?;
     let mut entries = Vec::new();
     let mut unread = 0;
+    let mut told = Ok(());
     for file in files.iter().flat_map(|file| in_folder(file)) {
         for audit in file.map_or_else(|error| vec![Err(error)], |file| audits(&file)) {
             match audit {
                 Ok(entry) => {
                     if json != Some("-") {
-                        output::quiet_when_closed(print(&entry))?;
+                        told = told.and(print(&entry));
                     }
                     entries.push(entry);
                 }
@@ -48,6 +50,7 @@ pub fn run(files: &[PathBuf], json: Option<&str>) -> anyhow::Result<bool> {
     if let Some(target) = json {
         output::json_to(target, &entries)?;
     }
+    output::quiet_when_closed(told)?;
     if unread > 0 {
         bail!("{unread} of {} results could not be read", unread + entries.len());
     }

@@ -2,6 +2,8 @@
 //!
 //! A file is written beside its place, as a *draft*, and then moved there in one step. A draft is locked while it is
 //! written: what a run that was killed left behind is unlocked, and the next run that comes by clears it away.
+//!
+//! What a run was given to read it does not write over.
 
 use super::harmless::line;
 use anyhow::Context;
@@ -9,6 +11,21 @@ use std::ffi::OsStr;
 use std::fs::{File, OpenOptions, Permissions};
 use std::io::{Error, ErrorKind, Result, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+/// Files that this run was given to read.
+static GIVEN: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// From now on a file is not written over, by whatever name.
+pub fn protect(path: &Path) {
+    let file = path.canonicalize().ok().filter(|file| file.is_file());
+    GIVEN.lock().unwrap_or_else(PoisonError::into_inner).extend(file);
+}
+
+fn is_given(path: &Path) -> bool {
+    let file = path.canonicalize().ok();
+    file.is_some_and(|file| GIVEN.lock().unwrap_or_else(PoisonError::into_inner).contains(&file))
+}
 
 /// How the name of a draft ends.
 const DRAFT: &str = ".piaffe-draft";
@@ -22,7 +39,7 @@ const MOST_LINKS: usize = 40;
 /// Writes a file; a reader never sees half of it. It keeps the permissions it had; a new one has those that `umask` gives. A link
 /// is written through, also to what is not there yet; a device or a pipe is written to.
 pub fn write(path: &Path, contents: &[u8]) -> anyhow::Result<()> {
-    let written = match destination(path) {
+    let written = match allowed(path) {
         Ok(Destination::Stream) => OpenOptions::new().write(true).open(path).and_then(|mut f| f.write_all(contents)),
         Ok(Destination::File(file)) => replace(&file, contents),
         Err(error) => Err(error),
@@ -30,7 +47,38 @@ pub fn write(path: &Path, contents: &[u8]) -> anyhow::Result<()> {
     match written {
         // A reader that has seen enough is no failure.
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
-        other => other.with_context(|| format!("cannot write {}", line(&path.to_string_lossy()))),
+        other => other.with_context(|| cannot(path)),
+    }
+}
+
+/// Whether a file can be written, before it is known what is to be in it: what takes long should not fail in its last step.
+///
+/// # Errors
+/// Why not, as far as that can be seen.
+pub fn check(path: &Path) -> anyhow::Result<()> {
+    let there = |file: PathBuf| if folder_of(&file).is_dir() { Ok(()) } else { Err(no_folder(folder_of(&file))) };
+    let writable = allowed(path).and_then(|destination| match destination {
+        Destination::Stream => Ok(()),
+        Destination::File(file) => there(file),
+    });
+    writable.with_context(|| cannot(path))
+}
+
+fn cannot(path: &Path) -> String {
+    format!("cannot write {}", line(&path.to_string_lossy()))
+}
+
+fn no_folder(folder: &Path) -> Error {
+    Error::new(ErrorKind::NotFound, format!("there is no folder {}", line(&folder.to_string_lossy())))
+}
+
+/// What a path leads to, unless it was given to be read.
+fn allowed(path: &Path) -> Result<Destination> {
+    match destination(path)? {
+        Destination::File(_) if is_given(path) => {
+            Err(Error::new(ErrorKind::AlreadyExists, "this is what was read: write to another file"))
+        }
+        destination => Ok(destination),
     }
 }
 
@@ -86,7 +134,7 @@ fn replace(path: &Path, contents: &[u8]) -> Result<()> {
     }
     let folder = folder_of(path);
     if !folder.is_dir() {
-        return Err(Error::new(ErrorKind::NotFound, format!("there is no folder {}", line(&folder.to_string_lossy()))));
+        return Err(no_folder(folder));
     }
     let mut draft = Draft::begin(folder, name, there).map_err(|error| match error.kind() {
         ErrorKind::PermissionDenied => {

@@ -60,12 +60,8 @@ impl Robot {
     /// All names and numbers that are none; or what is wrong with the robot that these make.
     pub fn with_all<'n>(&self, numbers: impl IntoIterator<Item = (&'n str, f64)>) -> Result<Robot, Unloadable> {
         let mut files = self.files.clone();
-        let mut set = |(name, value): (&str, f64)| match value.is_finite() {
-            true => files.set(name, value).err(),
-            false => Some(format!("`{name}` cannot be {value}: give a number")),
-        };
-        let wrong: Vec<String> = numbers.into_iter().filter_map(&mut set).collect();
-        if wrong.is_empty() { Robot::new(files) } else { Err(Unloadable::Specification(wrong.join("\n"))) }
+        let wrong = files.set_all(numbers).err().into_iter().flatten();
+        Robot::of_changed(files, wrong)
     }
 
     /// The robot with what is asked for beside its files: limits, stronger motors, a load.
@@ -74,9 +70,16 @@ impl Robot {
     /// What is not there to be changed; or what is wrong with the robot that comes of it.
     pub fn changed(&self, changes: &Changes) -> Result<Robot, Unloadable> {
         let mut files = self.files.clone();
-        changes.apply(&mut files).map_err(Unloadable::Specification)?;
-        Robot::new(files)
-            .map_err(|why| Unloadable::Specification(format!("with what is asked for, the robot is none:\n{why}")))
+        let wrong = changes.apply(&mut files).err();
+        Robot::of_changed(files, wrong)
+    }
+
+    /// The robot of files that were changed, unless that went wrong.
+    fn of_changed(files: RobotFiles, wrong: impl IntoIterator<Item = String>) -> Result<Robot, Unloadable> {
+        let robot = Robot::new(files);
+        let none = robot.as_ref().err().map(|why| format!("with what is asked for, the robot is none:\n{why}"));
+        let wrong: Vec<String> = wrong.into_iter().chain(none).collect();
+        if wrong.is_empty() { robot } else { Err(Unloadable::Specification(wrong.join("\n"))) }
     }
 
     /// The gait that a result carries with it, under its name there.

@@ -109,6 +109,8 @@ fn seal(key: &[u8; HASH], contents: &[u8]) -> [u8; HASH] {
 }
 
 fn read<T: DeserializeOwned>(path: &Path, key: &[u8; HASH]) -> Option<T> {
+    // A pipe or a device may have no end, or never begin.
+    path.metadata().ok().filter(fs::Metadata::is_file)?;
     let mut file = File::open(path).ok()?;
     let mut bytes = Vec::new();
     file.read_to_end(&mut bytes).ok()?;

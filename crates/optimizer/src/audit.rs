@@ -26,6 +26,9 @@ const ABSENT: &str = "not_examined";
 /// What an optimum may leave open, if it says so: what takes longest of its verdict, and what is told beyond it.
 const MAY_BE_ABSENT: [&str; 4] = ["certificate", "sensitivities", "stability", "real_legs"];
 
+/// The optimum is among those that were found, whose costs older versions took from the optimizer: they agree to such a share.
+const SAME_OPTIMUM: f64 = 1e-4;
+
 /// Of a result that has no motion.
 const NONE_FOUND: &str = "there is no motion: that none was found is a statement about the search";
 
@@ -102,8 +105,12 @@ impl Audit {
             }
         };
         let of_search = "how it was found, which a motion does not show";
-        statements
-            .extend(history.iter().map(|(key, _)| Statement::whole(key, Verdict::NotDerivable, of_search.into())));
+        statements.extend(history.iter().map(|(key, _)| match contradicted(key, result) {
+            Some(reason) => Statement::whole(key, Verdict::NotConfirmed, reason),
+            None => Statement::not_derivable(key, of_search),
+        }));
+        statements.extend(misread(entries, result));
+        statements.extend(said_absent(entries, result));
         Audit { name: result.name(), statements }
     }
 
@@ -154,6 +161,41 @@ fn missing<'a>(
         .map(|(key, _)| Statement::whole(key, Verdict::NotConfirmed, "it is missing, without a word of why".into()))
 }
 
+/// What is asked, where the file says it otherwise than it was read: with numbers that nothing here has.
+fn misread(stated: &serde_json::Map<String, Value>, result: &GaitResult) -> Vec<Statement> {
+    let read = serde_json::to_value(result).unwrap_or_default();
+    let asked = GIVEN.iter().filter_map(|key| Some(Statement::of(key, stated.get(*key)?, &read[*key])));
+    asked.filter(|statement| statement.verdict != Verdict::Confirmed).collect()
+}
+
+/// Entries that are said to be absent, and are not.
+fn said_absent<'a>(
+    stated: &'a serde_json::Map<String, Value>,
+    result: &'a GaitResult,
+) -> impl Iterator<Item = Statement> + 'a {
+    let there = |entry: &str| stated.get(entry).is_some_and(|value| !is_empty(value));
+    let reason = |entry: &str| format!("`{entry}` is there, and said not to have been examined");
+    let said = result.not_examined.iter().filter(move |open| there(&open.entry));
+    said.map(move |open| Statement::whole(ABSENT, Verdict::NotConfirmed, reason(&open.entry)))
+}
+
+/// What is wrong with the search's account, as far as the result itself shows it.
+fn contradicted(entry: &str, result: &GaitResult) -> Option<String> {
+    let found = &result.local_optima;
+    let effort = &result.search.effort;
+    let near = |a: f64, b: f64| (a - b).abs() <= SAME_OPTIMUM * a.abs().max(b.abs());
+    match (entry, result.cost) {
+        ("local_optima", _) if result.variables.is_empty() => Some("there is no motion, and these were found".into()),
+        ("local_optima", Some(cost)) if found.iter().all(|optimum| !near(optimum.cost, cost)) => {
+            Some(format!("the optimum, which costs {cost}, is none of those that were found"))
+        }
+        ("search", _) if effort.successes > effort.starts => {
+            Some(format!("{} of {} starts led to an optimum", effort.successes, effort.starts))
+        }
+        _ => None,
+    }
+}
+
 /// Why there is nothing to compare a result with.
 #[derive(Clone, Debug)]
 pub enum Refusal {
@@ -176,11 +218,14 @@ pub struct Built {
 /// Why there is none.
 pub fn derived(result: &GaitResult, gaits: &[&dyn Gait]) -> Result<GaitResult, Refusal> {
     let gait = gait_of(result, gaits).map_err(|foreign| Refusal::Because(Verdict::NotChecked, foreign.to_string()))?;
+    let refuted = |reason: String| Refusal::Because(Verdict::NotConfirmed, reason);
+    if !(result.speed.is_finite() && result.speed > 0.0) {
+        return Err(refuted(format!("{} m/s is no speed to walk at", result.speed)));
+    }
     if result.variables.is_empty() {
         let Description { robot, polynomial_order, .. } = *gait.description();
         return Err(Refusal::NoMotion(Built { robot, polynomial_order }));
     }
-    let refuted = |reason: String| Refusal::Because(Verdict::NotConfirmed, reason);
     let motion = Motion { phases: result.variables.clone() };
     under_its_limits(result, gait, |gait| GaitResult::of_motion(gait, result.criterion, result.speed, &motion))
         .map_err(refuted)?
@@ -202,10 +247,15 @@ impl Statement {
         match entry {
             "robot" => Statement::of(entry, stated, &built.robot.into()),
             "polynomial_order" => Statement::of(entry, stated, &built.polynomial_order.into()),
-            "message" => Statement::whole(entry, Verdict::NotDerivable, NONE_FOUND.into()),
-            "status" if !result.is_optimal() => Statement::whole(entry, Verdict::NotDerivable, NONE_FOUND.into()),
+            "message" => Statement::not_derivable(entry, NONE_FOUND),
+            "status" if !result.is_optimal() => Statement::not_derivable(entry, NONE_FOUND),
             _ => Statement::whole(entry, Verdict::NotConfirmed, "there is no motion that it could be of".into()),
         }
+    }
+
+    /// An entry that follows from nothing that is here, and why.
+    pub fn not_derivable(entry: &str, reason: &str) -> Statement {
+        Statement::whole(entry, Verdict::NotDerivable, reason.into())
     }
 
     fn whole(entry: &str, verdict: Verdict, reason: String) -> Statement {

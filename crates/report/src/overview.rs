@@ -8,6 +8,9 @@ use piaffe_optimizer::search::crossover::Comparison;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+/// The search's own account in it.
+const ENDED: &str = "maximum_speeds.ended_by";
+
 /// Results over speeds, in short.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Overview {
@@ -89,8 +92,9 @@ impl Overview {
         }
         let found = serde_json::to_value(found).unwrap_or_default();
         let entries = stated.as_object().into_iter().flatten();
-        let statements = entries.map(|(key, value)| Statement::of(key, value, &found[key])).collect();
-        Audit { name: "a sweep's overview".into(), statements }
+        let of_search = Statement::not_derivable(ENDED, "where a gait ends, and by what, was seen by the search");
+        let compared = entries.map(|(key, value)| Statement::of(key, value, &found[key]));
+        Audit { name: "a sweep's overview".into(), statements: compared.chain([of_search]).collect() }
     }
 
     /// What is told beside the points.

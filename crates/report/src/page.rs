@@ -126,8 +126,8 @@ fn lead(report: &Report) -> String {
     };
     text += &match without {
         0 => String::new(),
-        1 => " One search found no optimum.".into(),
-        n => format!(" {n} searches found no optimum."),
+        1 => " One search found no optimum, by its own account.".into(),
+        n => format!(" {n} searches found no optimum, by their own account."),
     };
     text + " Point at a curve to read its values; click to move the walk there."
 }

@@ -1,6 +1,7 @@
 //! A result beside its verdict. A report says nothing of a motion but what was derived from it.
 
 use piaffe_model::Gait;
+use piaffe_optimizer::audit::Audit;
 use piaffe_optimizer::readback::Readback;
 use piaffe_optimizer::result::GaitResult;
 
@@ -44,7 +45,11 @@ impl<'a> Record<'a> {
     /// Derives a result that comes from elsewhere anew.
     pub fn read(stated: GaitResult, gaits: &[&'a dyn Gait]) -> Record<'a> {
         if !stated.is_optimal() {
-            return Record { result: stated, standing: Standing::NoOptimum, design: None };
+            let standing = match Audit::of(&stated, gaits).objection() {
+                Some(why) => Standing::NotConfirmed(format!("{} is not confirmed: {why}", stated.name())),
+                None => Standing::NoOptimum,
+            };
+            return Record { result: stated, standing, design: None };
         }
         let (result, standing) = match Readback::new(stated.clone(), gaits) {
             Ok(Readback { result, gait, .. }) => (result, Standing::Confirmed(gait)),
@@ -55,8 +60,7 @@ impl<'a> Record<'a> {
 
     /// A result of a gait that cannot be had, and why.
     pub fn unreadable(stated: GaitResult, why: String) -> Record<'a> {
-        let standing = if stated.is_optimal() { Standing::NotConfirmed(why) } else { Standing::NoOptimum };
-        Record { result: stated, standing, design: None }
+        Record { result: stated, standing: Standing::NotConfirmed(why), design: None }
     }
 
     /// The gait of a confirmed optimum.

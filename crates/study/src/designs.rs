@@ -1,8 +1,9 @@
 //! The robots of a study: the base robot with other numbers where these stand in its specification.
 
 use crate::vary::{Over, Vary};
-use piaffe_codegen::{RobotFiles, SpecFile};
+use piaffe_codegen::{RobotFiles, SpecFile, spec};
 use piaffe_interpreter::{Robot, Unloadable};
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// More designs than this are a slip of the pen.
@@ -124,22 +125,41 @@ impl Designs {
     /// As for [`Designs::robot`].
     pub fn robot_with(&self, base: &Robot, numbers: &[f64]) -> Result<Robot, Unloadable> {
         let mut files = placeless(base.files());
-        for (name, value) in self.names.iter().zip(numbers) {
-            files.set(name, *value).map_err(Unloadable::Specification)?;
-        }
+        let numbers = self.names.iter().map(String::as_str).zip(numbers.iter().copied());
+        files.set_all(numbers).map_err(|faults| Unloadable::Specification(faults.join("\n")))?;
         Robot::new(files)
     }
 
     /// Everything that is wrong with the names.
     pub fn faults(&self, base: &Robot) -> Vec<String> {
+        let mut known: BTreeMap<String, &str> = BTreeMap::new();
         let mut faults = Vec::new();
-        for (k, name) in self.names.iter().enumerate() {
-            if self.names[..k].contains(name) {
-                faults.push(format!("{name} is varied twice"));
+        for name in &self.names {
+            for single in spec::alternatives(name) {
+                match known.insert(single.clone(), name) {
+                    Some(other) if other == name => faults.push(format!("{name} is varied twice")),
+                    Some(other) => faults.push(format!("{single} is varied twice: by {other} and by {name}")),
+                    None => {}
+                }
             }
-            faults.extend(base.files().clone().set(name, 1.0).err());
         }
+        // What is twice is told; of the rest each becomes something else.
+        let singles = known.keys().enumerate().map(|(k, name)| (name.as_str(), (k + 1) as f64));
+        faults.extend(base.files().clone().set_all(singles).err().into_iter().flatten());
         faults
+    }
+
+    /// Names of the base robot's numbers that are not the same in all designs, or need not be.
+    pub fn varied(&self, base: &Robot) -> BTreeSet<String> {
+        let before: BTreeMap<String, f64> = base.files().numbers().into_iter().collect();
+        let singles: BTreeSet<String> = self.names.iter().flat_map(|name| spec::alternatives(name)).collect();
+        let another = |name: &str| 2.0 * before.get(name).map_or(0.0, |value| value.abs()) + 1.0;
+        let probes: Vec<(&str, f64)> = singles.iter().map(|name| (name.as_str(), another(name))).collect();
+        let mut files = base.files().clone();
+        // What is wrong with the names is told elsewhere.
+        let _ = files.set_all(probes);
+        let changed = files.numbers().into_iter().filter(|(name, value)| before.get(name) != Some(value));
+        changed.map(|(name, _)| name).chain(singles.iter().cloned()).collect()
     }
 
     /// Designs that have all that differs: of each number those in which it is least and greatest.

@@ -18,6 +18,8 @@ pub struct Pair<T> {
 /// What differs, and what does not.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Difference {
+    /// Whether both results carry their specifications; if not, nothing is known of their numbers.
+    pub specified: bool,
     /// Numbers of the specification that are not the same in both, by their names.
     pub numbers: Vec<Changed>,
     /// Whether something else than numbers differs between the specifications, comments aside.
@@ -103,6 +105,7 @@ impl Difference {
         let (numbers, other_specification) = specification(a, b);
         Difference {
             prediction: Prediction::new(a, b, &numbers),
+            specified: a.specification.is_some() && b.specification.is_some(),
             numbers,
             other_specification,
             robot: pair(a, b, |r| r.robot.clone()),

@@ -7,15 +7,53 @@ use std::str::FromStr;
 
 /// One of so many parts; every so-many-th design is in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(try_from = "Written")]
 pub struct Shard {
     /// From 1.
-    pub index: usize,
-    pub count: usize,
+    index: usize,
+    count: usize,
+}
+
+/// A shard as it stands in a file.
+#[derive(Deserialize)]
+#[serde(rename = "Shard")]
+struct Written {
+    index: usize,
+    count: usize,
+}
+
+impl TryFrom<Written> for Shard {
+    type Error = String;
+
+    fn try_from(Written { index, count }: Written) -> Result<Shard, String> {
+        Shard::new(index, count)
+            .ok_or_else(|| format!("there is no part {index} of {count}: the index is from 1 to the count"))
+    }
 }
 
 impl Shard {
     /// All of a study.
     pub const WHOLE: Shard = Shard { index: 1, count: 1 };
+
+    /// The part of this index, from 1 to their count.
+    pub fn new(index: usize, count: usize) -> Option<Shard> {
+        (1..=count).contains(&index).then_some(Shard { index, count })
+    }
+
+    /// From 1.
+    pub fn index(self) -> usize {
+        self.index
+    }
+
+    /// Of all parts.
+    pub fn count(self) -> usize {
+        self.count
+    }
+
+    /// All parts of the same study.
+    pub fn all(self) -> impl Iterator<Item = Shard> {
+        (1..=self.count).map(move |index| Shard { index, ..self })
+    }
 
     /// The numbers of its points, ascending.
     pub fn points(self, study: &Study) -> Vec<usize> {
@@ -29,13 +67,10 @@ impl FromStr for Shard {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Shard, String> {
-        let shard = text.split_once('/').and_then(|(index, count)| {
-            Some(Shard { index: index.trim().parse().ok()?, count: count.trim().parse().ok()? })
-        });
-        match shard {
-            Some(shard) if 1 <= shard.index && shard.index <= shard.count => Ok(shard),
-            _ => Err("write I/N with I from 1 to N, for example 2/8".into()),
-        }
+        let shard = text
+            .split_once('/')
+            .and_then(|(index, count)| Shard::new(index.trim().parse().ok()?, count.trim().parse().ok()?));
+        shard.ok_or_else(|| "write I/N with I from 1 to N, for example 2/8".into())
     }
 }
 
