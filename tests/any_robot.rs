@@ -149,6 +149,21 @@ fn what_is_no_robot_is_said_with_its_place_and_a_remedy() {
     fails(here.path(), &format!("{trot} --robot nowhere"), 1, "nowhere");
     fails(here.path(), &format!("optimize trot --speed 0.6 --robot {STORK}"), 2, "[possible values: stalk]");
     fails(here.path(), &format!("check {STORK} --set gravity=1"), 2, "--set");
+    // What is wrong is told, not what other robots have.
+    for (typed, words) in [
+        ("optimize stalk", "--speed"),
+        ("optimize stalk --speed 0", "no positive number"),
+        ("optimize stalk --speed 0.6 --criterion enrgy", "energy"),
+        ("optimize stalk --speed 0.6 --friction 0", "more than 0"),
+        ("optimize stalk --speed 0.6 --bogus", "--bogus"),
+        ("sweep --speeds 0.6..0.2:0.1", "ends below its beginning"),
+    ] {
+        let out = piaffe_in(here.path(), &format!("{typed} --robot {STORK}"));
+        let told = text(&out.stderr);
+        assert!(out.status.code() == Some(2) && told.contains(words) && !told.contains("curvet"), "{typed}: {told}");
+    }
+    let help = succeeds(here.path(), &format!("optimize --help --robot {STORK}"), "");
+    assert!(help.contains("stalk") && !help.contains("curvet"), "{help}");
 
     let folder = edited("mass = 1.6 ", "masss = 1.6 ");
     fails(folder.path(), trot, 1, "model-spec/robot.toml:");

@@ -379,8 +379,8 @@ fn long_chains_and_deep_nests_do_not_abort() {
 }
 
 /// The same robot in MJCF: defaults, degrees, motors, geoms as feet, inertias by their principal axes.
-#[test]
-fn mjcf_says_the_same_as_urdf() {
+/// The robot of 00-control-ok.urdf.
+fn as_mjcf() -> String {
     let mut legs = String::new();
     for (name, x, y) in [("fl", 0.2, 0.1), ("fr", 0.2, -0.1), ("hl", -0.2, 0.1), ("hr", -0.2, -0.1)] {
         legs += &format!(
@@ -398,13 +398,18 @@ fn mjcf_says_the_same_as_urdf() {
             )
         })
         .collect();
-    let text = format!(
+    format!(
         r#"<mujoco model="q"><compiler autolimits="true"/><default><joint axis="0 1 0"/><motor ctrlrange="-30 30"/>
         <default class="knee"><joint range="-143.2394487827 -5.7295779513" armature="0.75" damping="1"/></default>
         <default class="look"><geom contype="0" conaffinity="0" mass="0"/></default></default>
         <worldbody><geom type="plane" size="1 1 1"/><body name="base" pos="0 0 1"><freejoint/>
         <inertial pos="0 0 0" mass="8" diaginertia="0.05 0.1 0.12"/>{legs}</body></worldbody><actuator>{motors}</actuator></mujoco>"#
-    );
+    )
+}
+
+#[test]
+fn mjcf_says_the_same_as_urdf() {
+    let text = as_mjcf();
     let lacking = import(&text, &Options::default()).expect_err("no speeds").0;
     assert!(lacking.len() == 8 && lacking.iter().all(|f| f.remedy.contains("--velocity")));
     let made = import(&text, &given(&[("--velocity", "20")])).unwrap();
@@ -560,4 +565,43 @@ fn friction_is_taken_over_and_said() {
     let drives =
         import(&given(&|_| r#"<dynamics damping="-0.1"/>"#.into()), &Options::default()).expect_err("drives").0;
     assert!(drives.len() == limits && drives.iter().all(|f| f.what.contains("less than none") && !f.remedy.is_empty()));
+}
+
+/// What the file says of its world is not the robot's: where it moves freely is no part of it, what it weighs is.
+#[test]
+fn a_world_is_no_part_of_the_robot_but_for_its_gravity() {
+    let plain = text("00-control-ok.urdf");
+    let made = import(&plain, &Options::default()).unwrap();
+    assert!(says(&made, "gravity is taken to be 9.81 m/s²"));
+    let trunk = "<link name=\"base\">";
+    assert!(plain.contains(trunk));
+    let world = "<link name=\"world\"/><joint name=\"root\" type=\"floating\"><parent link=\"world\"/><child link=\"base\"/>\
+                 <origin xyz=\"0.3 0 1\"/></joint>";
+    let in_world = import(&plain.replacen(trunk, &format!("{world}{trunk}"), 1), &Options::default()).unwrap();
+    let [alone, free] = [&made, &in_world].map(builds);
+    assert_eq!(alone.platform.name, free.platform.name);
+    assert_eq!(alone.platform.com, free.platform.com);
+    assert!(alone.legs.iter().zip(&free.legs).all(|(a, b)| a.mount == b.mount), "mounts are where they were");
+
+    let mjcf = as_mjcf();
+    let gravity = |option: &str| {
+        let file = mjcf.replacen("<worldbody>", &format!("{option}<worldbody>"), 1);
+        let made = import(&file, &given(&[("--velocity", "20")])).unwrap_or_else(|e| panic!("{option}: {e}"));
+        (builds(&made).gravity, made.notes.join("\n"))
+    };
+    assert_eq!(gravity("").0, 9.81);
+    assert_eq!(gravity("<option gravity=\"0 0 -1.62\"/>").0, 1.62);
+    let (none, told) = gravity("<option gravity=\"0 0 0\"/>");
+    assert!(none == 9.81 && told.contains("the file has no gravity") && told.contains("taken to be 9.81"), "{told}");
+    let (oblique, told) = gravity("<option gravity=\"1 0 -2\"/>");
+    assert!((oblique - 5.0f64.sqrt()).abs() < 1e-11 && told.contains("gravity is oblique"), "{told}");
+}
+
+/// Whichever leg it is on: what a gait holds still is said, with its angle.
+#[test]
+fn joints_that_are_held_are_named() {
+    let (made, _) = imported("unlike-legs.urdf");
+    assert!(says(&made, "FL_wrist = 0.1, FR_wrist = 0.1 rad"), "{}", made.notes.join("\n"));
+    let (plain, _) = imported("00-control-ok.urdf");
+    assert!(!plain.notes.iter().any(|note| note.contains("hold still")), "{}", plain.notes.join("\n"));
 }

@@ -464,3 +464,44 @@ fn a_sweeps_own_account_is_not_believed() {
         assert!(text(&done.stderr).contains("sweep.json"), "{}", text(&done.stderr));
     }
 }
+
+/// Legs with other joints, stops and motors: each is drawn between its own, and what it spends has its own name.
+#[test]
+fn legs_that_differ_are_shown_by_their_own_joints() {
+    let folder = tempfile::tempdir().unwrap();
+    let kitten = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/report/kitten");
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_string();
+    let optimum = |name: &str, more: &[&str]| {
+        let asked =
+            ["optimize", "bound", "--speed", "0.3", "--criterion", "torque", "--starts", "1", "--robot", kitten];
+        let out = piaffe(&[&asked[..], &["--examine", "none", "--json", &at(name)], more].concat());
+        assert!(out.status.success(), "{}", text(&out.stderr));
+        text(&out.stdout)
+    };
+    let told = optimum("a.json", &[]);
+    // A limit is told as finely as what stands beside it: 0.32 is not 0.3.
+    assert!(told.contains(" of 0.320"), "{told}");
+    optimum("b.json", &["--set", "links.body.mass=0.17"]);
+    let out = piaffe(&["report", &at("a.json"), &at("b.json"), "--out", &at("page")]);
+    assert!(out.status.success(), "{}", text(&out.stderr));
+    let page = std::fs::read_to_string(folder.path().join("page/index.html")).unwrap();
+    for joint in ["hip", "hock", "shoulder", "knee", "wrist"] {
+        assert!(page.contains(&format!("<span>{joint} ")), "nothing is spent by the {joint}");
+    }
+    let figures = std::fs::read_dir(folder.path().join("page/figures")).unwrap();
+    let figures: Vec<PathBuf> = figures.map(|entry| entry.unwrap().path()).collect();
+    let figure = |name: &str| {
+        let ending = format!("{name}.svg");
+        let file = figures.iter().find(|path| path.to_str().unwrap().ends_with(&ending));
+        std::fs::read_to_string(file.unwrap_or_else(|| panic!("no figure {name}"))).unwrap()
+    };
+    for (joint, stops) in [("shoulder", ["−0.6", "0.6"]), ("hip", ["−0.6", "1.2"]), ("wrist", ["0.1", "1.8"])] {
+        let angles = figure(&format!("angles-{joint}"));
+        for stop in stops {
+            assert!(angles.contains(&format!("stop {stop}<")), "the {joint}'s stops are others: {angles}");
+        }
+    }
+    // The motors of the hind legs turn half as fast, rev/min.
+    let [hind, fore] = ["envelope-hip", "envelope-shoulder"].map(|name| figure(name).contains(">20000<"));
+    assert!(fore && !hind, "joints are drawn in the envelope of other motors");
+}

@@ -98,7 +98,7 @@ class Robot:
     def unknown(self, names: Sequence[str]) -> list[str]:
         """What is wrong with these names, if they are to be those of numbers."""
     def gait(self, name: str) -> Gait:
-        """Derives a gait: 20 to 80 ms for those that are shipped."""
+        """Derives a gait: 30 to 170 ms for those that are shipped."""
     def set(self, numbers: Mapping[str, float]) -> Robot:
         """The same robot with other numbers, by the keys that lead to them: `{"links.thigh.mass": 1.2}`."""
     def loaded(self, mass: float, at: tuple[float, float, float]) -> Robot:

@@ -216,7 +216,7 @@ impl Robot {
         names.iter().filter_map(|name| files.clone().set(name, 1.0).err()).collect()
     }
 
-    /// Derives a gait: 20 to 80 ms for those that are shipped.
+    /// Derives a gait: 30 to 170 ms for those that are shipped.
     fn gait(&self, py: Python<'_>, name: &str) -> PyResult<Gait> {
         Gait::new(py, self, name)
     }

@@ -287,7 +287,7 @@ pub(super) static LIMITS: Table = Table {
             "swing_clearance",
             Number(NonNegative),
             "m",
-            "Height of the parabola above which the swing foot stays.",
+            "Height of the parabola above which the swing foot stays; where it leaves the ground from rest, at a take-off, of 27/4 w²(1 − w).",
         ),
         Key::new("half_step_duration", Pair(Positive), "s", "With `half_steps`: shortest and longest half step.")
             .only(Way::Short),

@@ -1,7 +1,9 @@
 //! What this program was built with, and what became of the files since.
 
+use super::harmless::line;
 use super::{input, whole};
 use piaffe_codegen::RobotFiles;
+use piaffe_codegen::spec::unusable_as_folder;
 use piaffe_model::Gait;
 use sha2::{Digest, Sha256};
 use std::path::Path;
@@ -35,11 +37,19 @@ pub fn gaits() -> &'static [&'static dyn Gait] {
     build().gaits
 }
 
-/// The module that a build would make of a folder: one of its name, none of that of the specification itself.
-pub fn module_of(folder: &Path) -> std::io::Result<String> {
+/// The module that a build would make of a folder: one of its name, none of that of the specification itself. A name that no module
+/// can have keeps nobody from the robot but a build: then that is told instead.
+pub fn module_of(folder: &Path) -> std::io::Result<Result<String, String>> {
     let absolute = std::path::absolute(folder)?;
     let name = absolute.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    Ok(if Path::new(build().folder).file_name() == absolute.file_name() { String::new() } else { name })
+    if Path::new(build().folder).file_name() == absolute.file_name() {
+        return Ok(Ok(String::new()));
+    }
+    let unusable = unusable_as_folder(&name).map(|why| {
+        let name = line(&name);
+        format!("for a build the folder `{name}` needs another name ({why}); --robot takes it as it is")
+    });
+    Ok(unusable.map_or(Ok(name), Err))
 }
 
 /// The robot's part of a gait's key; empty for the robot that needs no name.

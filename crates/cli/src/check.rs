@@ -1,5 +1,6 @@
 //! `piaffe check`: what a build would say of a robot's folder, and a drawing of the robot as it stands.
 
+use super::digits::at_least;
 use super::{built, input, output, whole};
 use anyhow::anyhow;
 use piaffe_codegen::check;
@@ -9,7 +10,8 @@ use std::path::Path;
 
 pub fn run(folder: &Path, drawing: Option<&Path>) -> anyhow::Result<bool> {
     let mut files = input::robot(folder).map_err(|why| anyhow!("{why}"))?;
-    files.module = built::module_of(folder)?;
+    let module = built::module_of(folder)?;
+    files.module = module.clone().unwrap_or_default();
     check(std::slice::from_ref(&files)).map_err(|why| anyhow!("this would not build\n{why}"))?;
     let robot = parse_robot(&files.robot.path, &files.robot.text).map_err(|_| anyhow!("this would not build"))?;
     let gaits = files.gaits.iter().filter_map(|file| parse_gait(&file.path, &file.text, &robot).ok());
@@ -17,7 +19,12 @@ pub fn run(folder: &Path, drawing: Option<&Path>) -> anyhow::Result<bool> {
     let robot = robot.robot;
     let links = robot.legs.iter().flat_map(|leg| &leg.chain);
     let mass = robot.platform.mass + links.map(|segment| segment.link.mass).sum::<f64>();
-    output::say!("{}: {mass:.3} kg on {} legs; gaits: {}. It builds.", robot.name, robot.legs.len(), gaits.join(", "));
+    let verdict = if module.is_ok() { "It builds." } else { "It goes." };
+    let (legs, gaits) = (robot.legs.len(), gaits.join(", "));
+    output::say!("{}: {} kg on {legs} legs; gaits: {gaits}. {verdict}", robot.name, at_least(mass, 0, 4));
+    if let Err(rename) = module {
+        output::note(&rename);
+    }
     if let Some(path) = drawing {
         whole::write(path, standing::svg(&robot).as_bytes())?;
         output::say!("drawn in {}", path.display());

@@ -57,8 +57,11 @@ fn tell(names: &Pair<String>, results: &Pair<GaitResult>, d: &Difference) -> io:
     if let Some(prediction) = &d.prediction {
         predicted(&mut out, prediction, results.a.criterion.unit())?;
     }
-    let durations = |list: &[f64]| list.iter().map(|t| decimal(*t, 4)).collect::<Vec<_>>().join("/");
-    writeln!(out, "phases          {} → {} s", durations(&d.durations.a), durations(&d.durations.b))?;
+    let durations = |list: &[f64]| match list {
+        [] => "none".into(),
+        list => list.iter().map(|t| decimal(*t, 4)).collect::<Vec<_>>().join("/") + " s",
+    };
+    writeln!(out, "phases          {} → {}", durations(&d.durations.a), durations(&d.durations.b))?;
     active(&mut out, d)?;
     for (k, slope) in d.slopes.iter().take(SLOPES).enumerate() {
         let head = if k == 0 { "slopes" } else { "" };
@@ -84,7 +87,8 @@ fn predicted(out: &mut impl Write, p: &Prediction, unit: &str) -> io::Result<()>
     for (k, part) in p.parts.iter().enumerate() {
         let head = if k == 0 { "explained by" } else { "" };
         let (name, change) = (&part.parameter, decimal(part.change, 4));
-        writeln!(out, "{head:15} {name} by {change} {}: {} {unit}", part.unit, signed(part.at_a))?;
+        let of = if part.unit.is_empty() { String::new() } else { format!(" {}", part.unit) };
+        writeln!(out, "{head:15} {name} by {change}{of}: {} {unit}", signed(part.at_a))?;
     }
     if !p.parts.is_empty() {
         let share =
@@ -99,8 +103,8 @@ fn predicted(out: &mut impl Write, p: &Prediction, unit: &str) -> io::Result<()>
 }
 
 fn signed(number: f64) -> String {
-    let plus = if number >= 0.0 { "+" } else { "" };
-    format!("{plus}{}", decimal(number, 4))
+    let sign = if number < 0.0 { "-" } else { "+" };
+    format!("{sign}{}", decimal(number.abs(), 4))
 }
 
 /// Limits without room to spare: in both, and in one of them.

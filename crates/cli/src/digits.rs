@@ -3,7 +3,11 @@
 /// A number with so many decimals, or with more where it has fewer significant digits than that; with a power of ten where
 /// plain digits would be many.
 pub fn decimal(x: f64, decimals: usize) -> String {
-    let digits = decimals.max(1);
+    at_least(x, decimals, decimals.max(1))
+}
+
+/// The same with at least so many significant digits.
+pub fn at_least(x: f64, decimals: usize, digits: usize) -> String {
     let magnitude = x.abs();
     if magnitude == 0.0 || !magnitude.is_finite() {
         return format!("{x:.decimals$}");
@@ -19,7 +23,7 @@ pub fn decimal(x: f64, decimals: usize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::decimal;
+    use super::{at_least, decimal};
 
     #[test]
     fn a_number_keeps_its_significant_digits() {
@@ -37,6 +41,9 @@ mod tests {
             (40.0, 1, "40.0"),
         ] {
             assert_eq!(decimal(x, decimals), text, "{x}");
+        }
+        for (x, text) in [(40.0, "40.0"), (0.32, "0.320"), (0.0008, "8.000e-4"), (6e4, "60000.0"), (6e9, "6.000e9")] {
+            assert_eq!(at_least(x, 1, 3), text, "{x}");
         }
     }
 }

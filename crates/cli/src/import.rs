@@ -109,7 +109,10 @@ pub fn run(arguments: Arguments) -> anyhow::Result<bool> {
         output::say!("  piaffe optimize {gait} --robot {folder} --speed {speed} --json {gait}.json");
         output::say!("  piaffe report {gait}.json --out {gait}");
     }
-    output::say!("The next build has the gaits too, if the folder is in model-spec/.");
+    match built::module_of(&folder)? {
+        Ok(_) => output::say!("The next build has the gaits too, if the folder is in model-spec/."),
+        Err(rename) => output::note(&rename),
+    }
     Ok(true)
 }
 
@@ -132,7 +135,7 @@ fn tried(made: Import) -> Import {
 
 /// The last word before anything is written: what a build would say of these files in this folder.
 fn builds(folder: &Path, files: &[(PathBuf, String)]) -> anyhow::Result<()> {
-    let module = built::module_of(folder)?;
+    let module = built::module_of(folder)?.unwrap_or_default();
     let file = |(path, text): &(PathBuf, String)| SpecFile { path: path.display().to_string(), text: text.clone() };
     let robot = RobotFiles { module, robot: file(&files[0]), gaits: files[1..].iter().map(file).collect() };
     check(&[robot]).map_err(|why| anyhow::anyhow!("this would not build: {why}"))

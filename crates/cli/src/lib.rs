@@ -21,6 +21,7 @@ mod merge;
 mod model;
 mod optimize;
 mod output;
+mod peaks;
 mod report;
 mod robots;
 mod study;
@@ -58,8 +59,8 @@ const NOT_CONFIRMED: u8 = 4;
     version,
     about = "Optimal gaits of a legged robot, each with a receipt",
     long_about = "Optimal periodic gaits of the robots in model-spec/, or of any robot (--robot), each with a receipt.\n\n\
-                  Without a command: finds the optimum of every gait and criterion at 0.6 m/s, prints them\n\
-                  beside the published values and writes the results to a folder.",
+                  Without a command: finds the optimum of every gait and criterion, at 0.6 m/s beside the published\n\
+                  values, at 1 m/s of those that fly, and writes the results to a folder.",
     after_help = "Examples:\n  \
                   piaffe                                             the main job; open results/index.html\n  \
                   piaffe optimize trot --speed 0.6 --json trot.json  one optimum\n  \
@@ -408,6 +409,17 @@ fn parse(typed: &[OsString]) -> Result<(Arguments, Subject), clap::Error> {
     command.try_get_matches_from_mut(typed).and_then(read).map_err(|error: clap::Error| error.format(&mut command))
 }
 
+/// The folder behind `--robot`, also where what was typed is no whole command.
+fn robot_in(typed: &[OsString]) -> Option<PathBuf> {
+    let mut words = typed.iter();
+    words
+        .find_map(|word| match word.to_str()? {
+            "--robot" => Some(None),
+            word => word.strip_prefix("--robot=").map(|folder| Some(folder.into())),
+        })?
+        .or_else(|| words.next().map(PathBuf::from))
+}
+
 /// What was typed. The names that a gait can have depend on the robot that is asked for: that is read first.
 fn read(typed: &[OsString]) -> Result<Arguments, u8> {
     let usage = |error: clap::Error| {
@@ -427,7 +439,12 @@ fn read(typed: &[OsString]) -> Result<Arguments, u8> {
                 robots::choose(first.robot.as_deref(), &changes)
             }
         }
-        Err(_) => robots::choose(None, &Changes::default()),
+        // Help names the gaits of the robot that was asked for, if it is one; of what is wrong else nothing hangs on the robot.
+        Err(help) if help.kind() == ErrorKind::DisplayHelp => {
+            let of_robot = robot_in(typed).map(|folder| robots::choose(Some(&folder), &Changes::default()));
+            of_robot.filter(Result::is_ok).unwrap_or_else(|| robots::choose(None, &Changes::default()))
+        }
+        Err(error) => return Err(usage(error)),
     };
     if let Err(error) = chosen {
         output::error(&error);

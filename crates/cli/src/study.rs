@@ -42,7 +42,7 @@ pub struct Arguments {
     /// A table of robots, CSV or Parquet: a column for each number under its name, a line for each robot.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["vary", "sample"])]
     designs: Option<PathBuf>,
-    /// What to tell of each optimum beyond its receipt; each takes about as long as finding it.
+    /// What to tell of each optimum beyond its receipt. Slopes take about as long as finding it, a certificate a third of that.
     #[arg(long, value_delimiter = ',', value_parser = PossibleValuesParser::new(Beyond::ALL.map(Beyond::name)))]
     also: Vec<String>,
     /// Answer one of N parts, I/N; `piaffe merge` puts them together.

@@ -1,18 +1,15 @@
 //! A result for a person.
 
-use super::digits::decimal;
+use super::digits::{at_least, decimal};
+use super::peaks;
 use piaffe_model::motion::Criterion;
 use piaffe_model::{Description, Mode};
+use piaffe_optimizer::constraints::sharing::impacts_pitch;
 use piaffe_optimizer::result::{GaitResult, NotExamined, Status};
 use piaffe_optimizer::search::evidence::Effort;
 use piaffe_optimizer::sensitivity::Sensitivity;
 use piaffe_verify::certificate::Certificate;
 use std::io::Write;
-
-/// Motor speeds are read in rev/min.
-fn rev_per_min(joint_speed: f64, gear: f64) -> f64 {
-    joint_speed * gear * 60.0 / std::f64::consts::TAU
-}
 
 /// A certificate in a line.
 fn standing(c: &Certificate) -> String {
@@ -25,7 +22,14 @@ fn standing(c: &Certificate) -> String {
         let [from, to] = [gap.from, gap.to].map(|t| decimal(t, 6));
         format!("{} {verdict} in phase {} from {from} to {to} s", gap.constraint, gap.phase)
     });
-    let open = c.cycle_error.is_none_or(|error| error > c.tolerance).then(|| "cycle not proven to close".to_string());
+    let open = match c.cycle_error {
+        None => Some("cycle not proven to close".to_string()),
+        Some(error) if error > c.tolerance => Some(format!(
+            "cycle proven to close within {error:.1e}, which is more than {:.0e}: impacts multiply what rounding leaves open",
+            c.tolerance
+        )),
+        Some(_) => None,
+    };
     format!("sampled: {}", gaps.chain(open).collect::<Vec<_>>().join("\n                  "))
 }
 
@@ -42,6 +46,19 @@ fn confidence(r: &GaitResult) -> String {
         None => "too few to tell how many further optima to expect".into(),
     };
     format!("reached by {} of {starts} starts{more}; {unseen}", best.reached)
+}
+
+/// What the limits at each real leg cost.
+fn at_real_legs(description: &Description, cost: f64, without: f64) -> String {
+    if !description.is_spatial() {
+        return "nothing is imposed: where the platform does not roll, legs that move as one share equally".into();
+    }
+    let (more, without) = (100.0 * (cost / without - 1.0), decimal(without, 4));
+    let pitch = match impacts_pitch(description) {
+        true => "; part of it is that impacts may not pitch the platform at all, where the verdict allows for 1 %",
+        false => "",
+    };
+    format!("{more:+.3} % against {without} with limits at the virtual legs only{pitch}")
 }
 
 /// A saving that a slope may promise, %: what it says of larger ones is not true any more.
@@ -81,7 +98,7 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
     if !r.conflicts.is_empty() {
         for c in &r.conflicts {
             let what = if c.violation > 1e-8 {
-                format!("violated by {:.3} (scaled)", c.violation)
+                format!("violated by {} (scaled)", at_least(c.violation, 3, 2))
             } else {
                 "in the way".into()
             };
@@ -91,15 +108,13 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
     if r.status == Status::Infeasible {
         match r.nearest_speed {
             Some(v) => writeln!(out, "  The nearest speed that works is {v} m/s.")?,
-            None => writeln!(out, "  No speed nearby works either: loosen one of these limits in the specification.")?,
+            None => writeln!(out, "  No speed was found that works: loosen one of these limits in the specification.")?,
         }
     }
     if let (Some(cost), Some(costs)) = (r.cost, r.costs) {
         writeln!(out, "  cost            {} {}", decimal(cost, 4), r.criterion.unit())?;
         if let Some(without) = r.virtual_cost {
-            let more = 100.0 * (cost / without - 1.0);
-            let without = decimal(without, 4);
-            writeln!(out, "  at real legs    {more:+.3} % against {without} with limits at the virtual legs only")?;
+            writeln!(out, "  at real legs    {}", at_real_legs(description, cost, without))?;
         }
         for criterion in Criterion::ALL {
             writeln!(out, "  {:<15} {} {}", criterion.name(), decimal(costs.of(criterion), 4), criterion.unit())?;
@@ -116,7 +131,7 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
             let without = match grounded {
                 None => "the gait without it may cost less".into(),
                 Some(GaitResult { gait, cost: Some(cost), .. }) => {
-                    format!("without it, {gait} takes {} {}", decimal(*cost, 4), r.criterion.unit())
+                    format!("without it, {gait} takes at most {} {}", decimal(*cost, 4), r.criterion.unit())
                 }
                 Some(GaitResult { gait, .. }) => format!("without it, no {gait} was found at this speed"),
             };
@@ -124,25 +139,7 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
         }
         writeln!(out, "  step length     {} m", decimal(step, 4))?;
     }
-    if !r.peaks.is_empty() {
-        writeln!(out, "  peaks at the joints     torque, N·m        speed, rad/s (motor, rev/min)   envelope margin")?;
-    }
-    for (peak, joint) in r.peaks.iter().zip(description.joints.iter()) {
-        writeln!(
-            out,
-            "    {:<16} {:>8} of {:<6} {:>10} of {:<6} ({:4.0} of {:4.0}) {:14.1} %",
-            peak.name,
-            decimal(peak.torque, 3),
-            decimal(peak.max_torque, 1),
-            decimal(peak.speed, 3),
-            decimal(peak.unloaded_speed, 2),
-            rev_per_min(peak.speed, joint.gear),
-            rev_per_min(peak.unloaded_speed, joint.gear),
-            // An active limit has a margin of rounding size, of either sign.
-            (1000.0 * peak.envelope_margin).round().abs() / 10.0
-                * if peak.envelope_margin < -5e-4 { -1.0 } else { 1.0 }
-        )?;
-    }
+    out.write_all(peaks::table(description, &r.peaks).as_bytes())?;
     if let Some(receipt) = &r.receipt {
         writeln!(
             out,
@@ -194,7 +191,7 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
         writeln!(out, "  real legs       {}", legs.sentence())?;
         writeln!(out, "                  least margin {}", legs.support.words())?;
         writeln!(out, "                  at the impact {}", legs.impact.words())?;
-        writeln!(out, "                  {}", legs.cost(r.criterion))?;
+        writeln!(out, "                  {}", legs.cost(r))?;
     }
     for NotExamined { entry, reason } in &r.not_examined {
         writeln!(out, "  not examined    {} ({reason})", entry.replace('_', " "))?;

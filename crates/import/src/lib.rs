@@ -303,9 +303,17 @@ fn remarks(model: &Model, robot: &robot::Robot, notes: &mut Vec<String>) {
     for leg in &robot.legs {
         notes.push(format!("leg `{}` ends in a point: {}", leg.name, leg.foot));
     }
-    let held = gaits::still(&robot.legs[0]).count();
-    if held > 0 {
-        notes.push("the gaits hold still (`locked`) what leaves their plane, and ankles".into());
+    if robot.gravity.is_none() {
+        notes.push(format!("gravity is taken to be {} m/s²", write::EARTH));
+    }
+    let held = gaits::held(robot);
+    if !held.is_empty() {
+        let held: Vec<String> = held.iter().map(|(joint, angle)| format!("{joint} = {angle}")).collect();
+        notes.push(format!(
+            "the gaits hold still what leaves their plane, and what swings below the second joint that does: {} rad; \
+             take from `locked` in gaits/ what is to swing freely",
+            held.join(", ")
+        ));
     }
 }
 

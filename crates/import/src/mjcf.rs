@@ -9,6 +9,9 @@ use roxmltree::Node;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
+/// m/s², where the file says nothing else.
+const GRAVITY: f64 = 9.81;
+
 /// kg/m³ of a geom that says nothing else.
 const DENSITY: f64 = 1000.0;
 
@@ -44,12 +47,13 @@ pub fn read(file: &File, faults: &mut Faults) -> Option<Model> {
     reader.actuators(root);
     reader.equalities(root);
     reader.settle_mass(root);
+    let gravity = reader.gravity(root);
     let Reader { links, joints, mut notes, .. } = reader;
     if child(root, "tendon").is_some() {
         notes.push("tendons are dropped".into());
     }
     let name = root.attribute("model").map(plain).filter(|name| !name.is_empty()).unwrap_or_else(|| "robot".into());
-    Some(Model { name, format: Format::Mjcf, links, joints, notes })
+    Some(Model { name, format: Format::Mjcf, links, joints, gravity, notes })
 }
 
 /// Attributes that elements of a class take where they have none of their own.
@@ -434,6 +438,23 @@ impl<'a, 't, 'f> Reader<'a, 't, 'f> {
                 _ => {}
             }
         }
+    }
+
+    /// Its size, m/s²; none where the file has no weight.
+    fn gravity(&mut self, root: Node<'a, 't>) -> Option<f64> {
+        let given = children(root, "option").filter(|option| option.has_attribute("gravity")).last();
+        let Some(option) = given else { return Some(GRAVITY) };
+        let of = Styled { node: option, tag: "option", class: "main".into() };
+        let down = Vector3::from(self.numbers::<3>(&of, "gravity")?);
+        let size = down.norm();
+        if size == 0.0 {
+            self.notes.push("the file has no gravity".into());
+            return None;
+        }
+        if down.normalize().iter().all(|along| along.abs() < 0.999) {
+            self.notes.push(format!("gravity is oblique in the file: {size} m/s² are taken to point down"));
+        }
+        Some(size)
     }
 
     fn settle_mass(&mut self, root: Node<'a, 't>) {

@@ -9,6 +9,8 @@ pub struct Model {
     pub format: Format,
     pub links: Vec<Link>,
     pub joints: Vec<Joint>,
+    /// m/s²; `None` where the file gives none.
+    pub gravity: Option<f64>,
     /// What was left out or rounded, a sentence each.
     pub notes: Vec<String>,
 }

@@ -17,6 +17,8 @@ pub struct Robot {
     /// From the root's origin.
     pub platform: Rigid,
     pub legs: Vec<Leg>,
+    /// m/s²; `None` where it is to be assumed.
+    pub gravity: Option<f64>,
 }
 
 #[derive(Clone, Debug)]
@@ -123,7 +125,7 @@ pub fn assemble(
     let legs = limbs.legs.iter().map(|limb| making.leg(limb)).collect();
     making.say();
     let name = if model.name.is_empty() { "robot".to_string() } else { model.name.clone() };
-    let mut robot = Robot { name, platform_name, platform, legs };
+    let mut robot = Robot { name, platform_name, platform, legs, gravity: model.gravity };
     apart(&mut robot, notes);
     robot
 }

@@ -3,7 +3,7 @@
 
 use super::Rigid;
 use super::fault::{Faults, Kind};
-use super::model::{Model, Shape};
+use super::model::{Kind as Joint, Model, Shape};
 use nalgebra::{Isometry3, Matrix3, Translation3, Unit, UnitQuaternion, Vector3};
 use std::collections::BTreeMap;
 
@@ -106,7 +106,15 @@ impl Skeleton {
             faults.add(Kind::NotATree, Some(place), what, "let the chain begin at the trunk");
             return None;
         }
-        faults.is_empty().then_some(Skeleton { root, below })
+        faults.is_empty().then(|| Skeleton { root: trunk(model, &below, root), below })
+    }
+}
+
+/// The robot's own root: a world on which it moves freely is no part of it.
+fn trunk(model: &Model, below: &[Vec<usize>], root: usize) -> usize {
+    match below[root][..] {
+        [only] if model.joints[only].kind == Joint::Free => trunk(model, below, model.joints[only].child),
+        _ => root,
     }
 }
 

@@ -58,7 +58,7 @@ pub fn read(file: &File, faults: &mut Faults) -> Option<Model> {
         ));
     }
     let name = root.attribute("name").map(plain).unwrap_or_default();
-    Some(Model { name, format: Format::Urdf, links, joints, notes })
+    Some(Model { name, format: Format::Urdf, links, joints, gravity: None, notes })
 }
 
 /// An element of the namespace of xacro, or one with what xacro replaces.

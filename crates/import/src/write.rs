@@ -7,6 +7,9 @@ use super::words::identifier;
 use nalgebra::Vector3;
 use std::fmt::Write;
 
+/// Gravity where the file gives none, m/s².
+pub const EARTH: f64 = 9.81;
+
 const AXES: [&str; 3] = ["roll", "yaw", "pitch"];
 
 /// `robot.toml`, with `notes` in its head.
@@ -25,7 +28,11 @@ pub fn robot(robot: &Robot, format: Format, notes: &[String]) -> String {
     for note in notes {
         put(&mut out, &format!("# - {note}"));
     }
-    put(&mut out, &format!("\nname = \"{name}\"\ngravity = 9.81                    # m/s²; assumed"));
+    let (gravity, assumed) = match robot.gravity {
+        Some(given) => (given, ""),
+        None => (EARTH, "; assumed"),
+    };
+    put(&mut out, &format!("\nname = \"{name}\"\ngravity = {:<24}# m/s²{assumed}", number(gravity)));
     put(&mut out, &format!("\n[links.{}]", robot.platform_name));
     inertial(&mut out, &robot.platform, ["roll", "yaw", "pitch"], "");
     for leg in &robot.legs {

@@ -19,6 +19,9 @@ use piaffe_optimizer::search::branch::connected;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
+/// How far the cell of a speed without neighbours reaches to either side, as a share of it.
+const ALONE: f64 = 0.03;
+
 /// What a sweep tells beside its points; see [`Overview`](crate::overview::Overview). It is an account of a search, which no
 /// motion confirms.
 #[derive(Clone, Debug, Default)]
@@ -384,7 +387,7 @@ impl Line {
             let before = k.checked_sub(1).and_then(middle);
             let after = middle(k);
             // At the ends as far as on the other side.
-            let half = before.map(|b| speeds[k] - b).or(after.map(|a| a - speeds[k])).unwrap_or(0.0);
+            let half = before.map(|b| speeds[k] - b).or(after.map(|a| a - speeds[k])).unwrap_or(ALONE * speeds[k]);
             let other = after.map(|a| a - speeds[k]).unwrap_or(half);
             [before.unwrap_or(speeds[k] - half), speeds[k] + other]
         };

@@ -3,7 +3,7 @@
 use super::marks::marks;
 use super::number::{digits, given, significant};
 use super::page::{capital, durations};
-use super::subject::Subject;
+use super::subject::{Subject, spaced};
 use maud::{Markup, html};
 use piaffe_model::motion::Criterion;
 use piaffe_optimizer::result::GaitResult;
@@ -77,19 +77,22 @@ fn spent(s: &Subject) -> Vec<String> {
         Criterion::Energy => (m.torque[j] * m.qd[j]).abs(),
         Criterion::Torque => m.torque[j] * m.torque[j],
     };
-    let mut depths = vec![0.0; s.depths()];
+    let mut joints = vec![0.0; s.description().joints()];
     let mut standing = 0.0;
     for pair in s.walk.moments.windows(2).filter(|pair| pair[0].phase == pair[1].phase) {
-        for j in 0..s.description().joints() {
+        for (j, spent) in joints.iter_mut().enumerate() {
             let part = 0.5 * (pair[1].time - pair[0].time) * (rate(&pair[0], j) + rate(&pair[1], j));
-            depths[s.depth(j)] += part;
+            *spent += part;
             standing += if pair[0].mode.stance() == Some(s.leg_of(j)) { part } else { 0.0 };
         }
     }
-    let all: f64 = depths.iter().sum();
+    let all: f64 = joints.iter().sum();
     let share = |name: &str, part: f64| format!("{name} {:.0} %", 100.0 * part / all);
-    let of_depths = depths.iter().enumerate().map(|(k, part)| share(&super::subject::spaced(s.kind(k)), *part));
-    of_depths.chain([share("standing legs", standing)]).collect()
+    let of_kinds = s.kinds(|_| ()).into_iter().map(|kind| {
+        let part = kind.joints.iter().map(|j| joints[*j]).sum();
+        share(&spaced(&kind.name), part)
+    });
+    of_kinds.chain([share("standing legs", standing)]).collect()
 }
 
 /// The limits with a price, the dearest first, each with the sum of its prices.

@@ -4,28 +4,36 @@ use super::figure::Figure;
 use super::ink::Ink;
 use super::plot::{Axis, Curve, Limit, Plot};
 use super::scene::Dash;
-use super::subject::Subject;
+use super::subject::{Kind, Subject, spaced};
 use std::f64::consts::TAU;
 
-/// A plot per kind of joint.
+/// A plot per kind of joint and motor.
 pub fn figures(s: &Subject) -> Vec<Figure> {
-    (0..s.depths()).map(|depth| one(s, depth)).collect()
+    let d = s.description();
+    let motor = |j: usize| {
+        let motor = &d.joints[j];
+        (members(s, j), motor.gear, motor.max_torque, motor.unloaded_speed, motor.loaded_speed)
+    };
+    s.kinds(motor).iter().map(|kind| one(s, kind)).collect()
 }
 
-fn one(s: &Subject, depth: usize) -> Figure {
+/// How many real legs' joints move as this one.
+fn members(s: &Subject, joint: usize) -> usize {
+    s.description().legs[s.leg_of(joint)].members.len()
+}
+
+fn one(s: &Subject, Kind { name, joints }: &Kind) -> Figure {
     let d = s.description();
-    let kind = s.kind(depth);
-    let joints: Vec<usize> = (0..d.joints()).filter(|j| s.depth(*j) == depth).collect();
     let motor = &d.joints[joints[0]];
     let rev_per_min = |speed: f64| speed * motor.gear * 60.0 / TAU;
     // The motors of all legs that move as one share the torque.
-    let motors = d.legs[0].members.len() as f64 * motor.gear;
+    let motors = members(s, joints[0]) as f64 * motor.gear;
     let torque = |joint_torque: f64| joint_torque / motors;
     let (most, unloaded, loaded) =
         (torque(motor.max_torque), rev_per_min(motor.unloaded_speed), rev_per_min(motor.loaded_speed));
     let x = Axis::new("torque at the motor", "N·m").over([0.0, 1.08 * most]);
     let y = Axis::new("speed", "rev/min").over([0.0, 1.1 * unloaded]);
-    let mut plot = Plot::new(format!("Torque–speed, {}", super::subject::spaced(kind)), x, y);
+    let mut plot = Plot::new(format!("Torque–speed, {}", spaced(name)), x, y);
     plot.forbidden = vec![vec![
         [0.0, unloaded],
         [most, loaded],
@@ -36,7 +44,7 @@ fn one(s: &Subject, depth: usize) -> Figure {
     ]];
     let edge = vec![[0.0, unloaded], [most, loaded], [most, 0.0]];
     plot.limits = vec![Limit { name: String::new(), points: edge }];
-    for &j in &joints {
+    for &j in joints {
         let phases = (0..s.walk.phases.len()).map(|k| {
             let moments = s.walk.moments.iter().filter(move |m| m.phase == k);
             moments.map(|m| [torque(m.torque[j].abs()), rev_per_min(m.qd[j].abs())]).collect()
@@ -54,7 +62,7 @@ fn one(s: &Subject, depth: usize) -> Figure {
     });
     plot.note = Some(margin);
     Figure::plot(
-        &format!("envelope-{kind}"),
+        &format!("envelope-{name}"),
         &plot,
         "Shaded: out of the reach of the motor, of which every real leg's joint has one.",
     )

@@ -5,7 +5,7 @@ use super::ink::Ink;
 use super::number::given;
 use super::plot::{Curve, Limit, Plot};
 use super::scale::domain;
-use super::subject::Subject;
+use super::subject::{Kind, Subject, spaced};
 use piaffe_model::Rotation;
 
 /// Limits this much beyond the values are said rather than drawn: they would flatten the curves.
@@ -53,26 +53,23 @@ fn symmetric(plot: &mut Plot, limits: &[f64], peak: f64, unit: &str) {
     }
 }
 
-/// Angles, a plot per kind of joint, each between its stops; and the platform's rotation.
+/// Angles, a plot per kind of joint and stops, between these; and the platform's rotation.
 pub fn angles(s: &Subject) -> Vec<Figure> {
     let d = s.description();
-    let mut figures: Vec<Figure> = (0..s.depths())
-        .map(|depth| {
-            let kind = s.kind(depth);
-            let mut plot = s.time_plot(format!("{} angles", capital(kind)), "rad");
-            let joints: Vec<usize> = (0..d.joints()).filter(|j| s.depth(*j) == depth).collect();
-            plot.curves = s.joint_curves(joints.iter().copied(), |m, j| m.q[j]);
-            let [from, to] = plot.x.domain.unwrap_or_default();
-            for stop in d.joints[joints[0]].range {
-                plot.limits
-                    .push(Limit { name: format!("stop {}", given(stop)), points: vec![[from, stop], [to, stop]] });
-            }
-            let values = plot.curves.iter().flat_map(|c| c.segments.iter().flatten()).map(|p| p[1]);
-            plot.y.domain = Some(roomy(values.chain(d.joints[joints[0]].range)));
-            let caption = format!("Relative to the parent link; dashed, the stops of the {kind}.");
-            Figure::plot(&format!("angles-{kind}"), &plot, caption)
-        })
-        .collect();
+    let between = |Kind { name, joints }: &Kind| {
+        let mut plot = s.time_plot(format!("{} angles", capital(name)), "rad");
+        plot.curves = s.joint_curves(joints.iter().copied(), |m, j| m.q[j]);
+        let [from, to] = plot.x.domain.unwrap_or_default();
+        let stops = d.joints[joints[0]].range;
+        for stop in stops {
+            plot.limits.push(Limit { name: format!("stop {}", given(stop)), points: vec![[from, stop], [to, stop]] });
+        }
+        let values = plot.curves.iter().flat_map(|c| c.segments.iter().flatten()).map(|p| p[1]);
+        plot.y.domain = Some(roomy(values.chain(stops)));
+        let caption = format!("Relative to the parent link; dashed, the stops of the {}.", spaced(name));
+        Figure::plot(&format!("angles-{name}"), &plot, caption)
+    };
+    let mut figures: Vec<Figure> = s.kinds(|j| d.joints[j].range).iter().map(between).collect();
     if d.rotation != Rotation::None {
         let name = if d.rotation == Rotation::Roll { "roll" } else { "pitch" };
         let mut plot = s.time_plot(format!("Platform {name}"), "rad");
@@ -89,7 +86,7 @@ fn roomy(values: impl Iterator<Item = f64>) -> [f64; 2] {
 }
 
 fn capital(word: &str) -> String {
-    let word = super::subject::spaced(word);
+    let word = spaced(word);
     let mut letters = word.chars();
     letters.next().map_or(String::new(), |c| c.to_uppercase().chain(letters).collect())
 }

@@ -361,7 +361,7 @@ fn receipt(r: &GaitResult) -> Markup {
                 dt { "first-order optimality (KKT)" } dd { (receipt.kkt_residual.map_or(html! { "–" }, scientific)) }
             }
             @if let Some(c) = &r.certificate { (certificate::section(c)) }
-            @if let Some(legs) = &r.real_legs { (real_legs::section(legs, r.criterion)) }
+            @if let Some(legs) = &r.real_legs { (real_legs::section(legs, r)) }
             @for open in &r.not_examined { p.note { "Not examined: " (spaced(&open.entry)) " (" (open.reason) ")." } }
             h3 { "Limits without room to spare" }
             @if receipt.findings.is_empty() { p { "None: all limits have room." } }

@@ -9,8 +9,8 @@ use super::scene::{Dash, Xy};
 use super::subject::{Subject, spaced};
 use maud::{Markup, html};
 use piaffe_model::Mode;
-use piaffe_model::motion::Criterion;
 use piaffe_optimizer::four_legs::{Instant, Lift, RealLegs, Verdict, Worst};
+use piaffe_optimizer::result::GaitResult;
 
 /// Intervals per phase with which curves are drawn.
 const INTERVALS: usize = 120;
@@ -44,9 +44,13 @@ fn loads(s: &Subject, lift: &Lift) -> Figure {
     let mut plot = s.time_plot("Vertical load of every real foot", "N");
     plot.curves = of_feet(lift, |i, leg| i.reactions[leg][1]);
     let d = s.description();
-    let feet = d.legs[0].members.len() as f64;
-    let least = d.limits.min_vertical_force / feet;
-    limit(&mut plot, least, format!("least {} N", given(least)));
+    let mut feet: Vec<usize> = d.legs.iter().map(|leg| leg.members.len()).collect();
+    feet.sort_unstable();
+    feet.dedup();
+    for feet in feet {
+        let least = d.limits.min_vertical_force / feet as f64;
+        limit(&mut plot, least, format!("least {} N", given(least)));
+    }
     let caption = "With the shares that leave most room within the limits of every foot and joint.";
     Figure::plot("real-loads", &plot, caption)
 }
@@ -80,14 +84,14 @@ fn limit(plot: &mut Plot, at: f64, name: String) {
     plot.limits.push(Limit { name, points: vec![[from, at], [to, at]] });
 }
 
-pub fn section(legs: &RealLegs, criterion: Criterion) -> Markup {
+pub fn section(legs: &RealLegs, r: &GaitResult) -> Markup {
     html! {
         h3 { "Real legs" }
         p { b { (verdict(legs)) } " In the equations of motion of the whole robot, equal shares leave lacking at most "
             (legs.equal_shares.support.words()) " between impacts and " (legs.equal_shares.impact.words_of_impact())
             " at an impact, the best shares " (legs.best_shares.support.words()) " and "
             (legs.best_shares.impact.words_of_impact()) "." }
-        p { "With the cheapest shares: " (legs.cost(criterion)) "; " (digits(legs.costs.proportional.of(criterion), 6))
+        p { "With the cheapest shares: " (legs.cost(r)) "; " (digits(legs.cost_by_load(r), 6))
             " if each foot pushes in proportion to its load." }
         @if legs.verdict() != Verdict::NoEquilibrium {
             ul { (worst("Least room between impacts", &legs.support)) (worst("Least room at an impact", &legs.impact)) }

@@ -13,6 +13,14 @@ use piaffe_optimizer::walk::{self, Moment, Walk};
 /// Intervals per phase with which curves are drawn.
 const INTERVALS: usize = 80;
 
+/// Joints that are shown together.
+pub struct Kind {
+    /// As the specification would have it.
+    pub name: String,
+    /// At least one.
+    pub joints: Vec<usize>,
+}
+
 pub struct Subject<'a> {
     /// Names it on the page and in files; no other has the same.
     pub id: String,
@@ -66,8 +74,8 @@ impl<'a> Subject<'a> {
         }
     }
 
-    /// The joints of each virtual leg, numbered by how far down the leg they are.
-    pub fn depth(&self, joint: usize) -> usize {
+    /// How far down its leg a joint is.
+    fn depth(&self, joint: usize) -> usize {
         joint - self.description().legs[self.leg_of(joint)].first_joint
     }
 
@@ -75,16 +83,33 @@ impl<'a> Subject<'a> {
         usize::from(joint >= self.description().legs[1].first_joint)
     }
 
-    /// What a joint is called in every leg.
-    pub fn kind(&self, depth: usize) -> &'static str {
-        let d = self.description();
-        d.joints[d.legs[0].first_joint + depth].name.trim_end_matches(char::is_numeric)
+    /// What a joint is called in every leg: its name without the leg's number.
+    fn called(&self, joint: usize) -> &'static str {
+        let name = self.description().joints[joint].name;
+        name.strip_suffix(&(self.leg_of(joint) + 1).to_string()).unwrap_or(name)
     }
 
-    /// How many joints a leg has.
-    pub fn depths(&self) -> usize {
-        let leg = &self.description().legs[0];
-        leg.end_joint - leg.first_joint
+    /// The joints, those together that are called alike and of which this is the same.
+    pub fn kinds<K: PartialEq>(&self, alike: impl Fn(usize) -> K) -> Vec<Kind> {
+        let mut kinds: Vec<Kind> = Vec::new();
+        for j in 0..self.description().joints() {
+            let same = |known: &&mut Kind| {
+                let first = known.joints[0];
+                self.called(first) == self.called(j) && alike(first) == alike(j)
+            };
+            match kinds.iter_mut().find(same) {
+                Some(known) => known.joints.push(j),
+                None => kinds.push(Kind { name: self.called(j).into(), joints: vec![j] }),
+            }
+        }
+        // Where legs have different ones of a name, it is also told whose they are.
+        let names: Vec<String> = kinds.iter().map(|kind| kind.name.clone()).collect();
+        for kind in &mut kinds {
+            if names.iter().filter(|name| **name == kind.name).count() > 1 {
+                kind.name += &format!("_of_leg_{}", self.leg_of(kind.joints[0]) + 1);
+            }
+        }
+        kinds
     }
 
     /// A value over time, phase by phase.

@@ -6,7 +6,7 @@ use piaffe_verify::Finding;
 use piaffe_verify::certificate::Standing;
 use serde::{Deserialize, Serialize};
 
-/// What can be told of an optimum beyond its receipt; each takes about as long as finding it.
+/// What can be told of an optimum beyond its receipt. Slopes take about as long as finding it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Beyond {

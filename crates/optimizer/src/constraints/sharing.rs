@@ -26,13 +26,18 @@ pub fn applies(d: &Description) -> bool {
     d.limits.real_legs && d.is_spatial()
 }
 
-/// Whether impacts can pitch the robot, so that it must be forbidden: hips off the mass centre or rotors make them.
+/// Whether impacts must be forbidden to pitch the robot.
 pub fn pitches(d: &Description) -> bool {
+    applies(d) && impacts_pitch(d)
+}
+
+/// Whether impacts can pitch a robot that rolls: hips off the mass centre or rotors make them.
+pub fn impacts_pitch(d: &Description) -> bool {
     let same = SAME * d.leg_length();
     let hips = d.bodies.iter().filter(|b| b.parent == Some(0));
     let level = hips.flat_map(|b| &b.offset[..2]).all(|x| x.abs() < same);
     let rotors = d.joints.iter().any(|j| j.rotor_inertia != 0.0);
-    applies(d) && (!level || rotors)
+    d.is_spatial() && (!level || rotors)
 }
 
 /// Why the constraints cannot be imposed, if they cannot.

@@ -2,7 +2,7 @@
 
 use super::lack::{Component, Lack};
 use super::receipt::{BALANCED, Lacks, RealLegs, Verdict, Worst};
-use piaffe_model::motion::Criterion;
+use crate::result::GaitResult;
 
 /// What is lacking beyond this is no rounding.
 const ROUNDING: f64 = 1e-9;
@@ -61,8 +61,9 @@ impl RealLegs {
 }
 
 impl RealLegs {
-    /// What the real joints cost, beside what the virtual legs' joints do.
-    pub fn cost(&self, criterion: Criterion) -> String {
+    /// What the real joints cost in the result's criterion, beside what the virtual legs' joints do.
+    pub fn cost(&self, result: &GaitResult) -> String {
+        let criterion = result.criterion;
         // Where no shares are within the limits all the time, the least of any is a bound.
         let (cost, how) = match self.verdict() {
             Verdict::BeyondLimits => (&self.costs.least, "at least "),
@@ -71,9 +72,27 @@ impl RealLegs {
         let (real, without) = (cost.of(criterion), self.costs.virtual_legs.of(criterion));
         let more = real / without - 1.0;
         let beside = if more.abs() < SAME_COST { "as".into() } else { format!("{} % more than", percent(more)) };
-        let (name, unit) = (criterion.name(), criterion.unit());
-        format!("{name} on the real joints {how}{real:.4} {unit}, {beside} at the virtual legs'")
+        let (name, unit, real) = (criterion.name(), criterion.unit(), number(self.as_stated(real, result)));
+        format!("{name} on the real joints {how}{real} {unit}, {beside} at the virtual legs'")
     }
+
+    /// The same if each foot pushes in proportion to its load.
+    pub fn cost_by_load(&self, result: &GaitResult) -> f64 {
+        self.as_stated(self.costs.proportional.of(result.criterion), result)
+    }
+
+    /// Costs here are sums over instants, which compare with each other; beside the result's own, an integral, they are put in its
+    /// proportion.
+    fn as_stated(&self, cost: f64, result: &GaitResult) -> f64 {
+        let known = if result.limits_at_real_legs { &self.costs.proportional } else { &self.costs.virtual_legs };
+        let scale = result.cost.map_or(1.0, |stated| stated / known.of(result.criterion));
+        if scale.is_finite() { cost * scale } else { cost }
+    }
+}
+
+/// Four decimals, or five digits where these would be too many or too few.
+fn number(x: f64) -> String {
+    if (1e-2..1e7).contains(&x.abs()) { format!("{x:.4}") } else { format!("{x:.4e}") }
 }
 
 impl Component {
@@ -120,6 +139,8 @@ impl Worst {
     /// Margin, time and what is in the way.
     pub fn words(&self) -> String {
         let limits: Vec<&str> = self.binding.iter().map(|b| b.limit.as_str()).collect();
-        format!("{:.4} (phase {}, t = {:.3} s: {})", self.margin, self.phase, self.time, limits.join(", "))
+        // No room at all has no sign.
+        let margin = if self.margin.abs() < 5e-5 { 0.0 } else { self.margin };
+        format!("{margin:.4} (phase {}, t = {:.3} s: {})", self.phase, self.time, limits.join(", "))
     }
 }

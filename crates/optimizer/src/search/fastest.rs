@@ -19,8 +19,15 @@ const FASTEST: f64 = 6.0;
 /// Starts at a speed that may have no motion at all, where their number is not given.
 const STARTS: usize = 4;
 
-/// Speeds, each twice as far off as the one before, at which the question is asked again.
+/// Starts at a speed where few have found nothing.
+const WIDE: usize = 8;
+
+/// Speeds, each further off than the one before, at which the question is asked again.
 const ATTEMPTS: usize = 8;
+/// By so much is each further off than the last.
+const FURTHER: f64 = 1.5;
+/// No robot is asked to go slower, in its unit of speed.
+const SLOWEST: f64 = 0.01;
 
 /// What ends a gait where motions go on but optima do not.
 const BEYOND: &str = "finding an optimum among the motions that there are";
@@ -148,21 +155,35 @@ fn attempt(gait: &dyn Gait, speed: f64, from: Option<&[f64]>, settings: &Setting
 }
 
 /// For a speed without a feasible motion the nearest one at which the same question has an answer, as far as
-/// local searches can tell. Tries speeds ever further off on both sides, then bisects from the motion found; and asks there.
+/// local searches can tell. Looks for motions at speeds ever further off on both sides, and if there seem to be none for optima, which
+/// takes longer; then bisects from what was found, and asks there.
 pub fn nearest_speed(gait: &dyn Gait, criterion: Criterion, speed: f64, settings: &Settings) -> Option<f64> {
     let few = Settings { starts: Some(settings.starts.unwrap_or(STARTS).min(3)), ..settings.clone() };
+    let wide = Settings { starts: Some(settings.starts.unwrap_or(WIDE).min(WIDE)), ..settings.clone() };
+    let motion = |speed: f64| Some(attempt(gait, speed, None, &few)).filter(|local| local.status.is_optimal());
+    let optimum =
+        |speed: f64| search(gait, criterion, speed, &wide, &|_| {}).optima.into_iter().next().map(|found| found.local);
+    nearest_by(&motion, gait, criterion, speed, settings)
+        .or_else(|| nearest_by(&optimum, gait, criterion, speed, settings))
+}
+
+/// The same by one way of looking for motions at a speed.
+fn nearest_by(
+    look: &dyn Fn(f64) -> Option<Local>,
+    gait: &dyn Gait,
+    criterion: Criterion,
+    speed: f64,
+    settings: &Settings,
+) -> Option<f64> {
     let none = Settings { starts: Some(0), ..settings.clone() };
     let unit = Units::new(gait.description()).speed();
     let (mut slower, mut faster) = (speed, speed);
-    for _ in 0..8 {
-        for (candidate, last) in [(slower / 1.5, slower), (faster * 1.5, faster)] {
-            if candidate > FASTEST * unit {
+    for _ in 0..ATTEMPTS {
+        for (candidate, last) in [(slower / FURTHER, slower), (faster * FURTHER, faster)] {
+            if !(SLOWEST * unit..=FASTEST * unit).contains(&candidate) {
                 continue;
             }
-            let found = attempt(gait, candidate, None, &few);
-            if !found.status.is_optimal() {
-                continue;
-            }
+            let Some(found) = look(candidate) else { continue };
             let (mut good, mut bad, mut theta) = (candidate, last, found.theta);
             while (bad - good).abs() > BISECTION * unit {
                 let middle = 0.5 * (good + bad);
@@ -177,7 +198,7 @@ pub fn nearest_speed(gait: &dyn Gait, criterion: Criterion, speed: f64, settings
                 return Some(answered);
             }
         }
-        (slower, faster) = (slower / 1.5, faster * 1.5);
+        (slower, faster) = (slower / FURTHER, faster * FURTHER);
     }
     None
 }

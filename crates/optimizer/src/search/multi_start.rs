@@ -153,7 +153,7 @@ pub fn search_watched(
         return found;
     }
     // Descents may fail where there are motions: from these they have no limit to find their way to.
-    let known = motions(task, settings.seed, found.effort.starts, watch);
+    let known = motions(task, settings.seed, found.effort.starts, neighbours, watch);
     let thetas: Vec<Vec<f64>> = known.iter().map(|local| local.theta.clone()).collect();
     ends.par_extend(thetas.par_iter().map(follow));
     let mut found = collect(task, &ends);
@@ -194,9 +194,13 @@ fn begin(task: &Task, seed: u64, k: usize, best: Option<&Optimum>, watch: Watch)
         return End { local: task.descend(&hop(task, seed, k, &best.local.theta), observe), informed: true };
     }
     let theta = start(task.gait, task.criterion, task.speed, seed, k);
-    // Every second start plunges: what is found must not depend on one way of beginning.
+    End { local: descend(task, &theta, k, watch), informed: false }
+}
+
+/// Where the k-th start leads. Every second one plunges: what is found must not depend on one way of beginning.
+pub fn descend(task: &Task, theta: &[f64], k: usize, watch: Watch) -> Local {
     let way = if k % 2 == 1 { Task::plunge } else { Task::descend };
-    End { local: way(task, &theta, observe), informed: false }
+    way(task, theta, &mut |_: &Iteration| watch(Event::Iterate))
 }
 
 /// The k-th start of a seed: the default walk, then random ones.

@@ -17,6 +17,12 @@ const GRID: usize = 240;
 /// Constraints above this (scaled) are left alone.
 const NEAR: f64 = 2e-3;
 
+/// Where a parabola comes below this (scaled) it is asked what the constraint itself does.
+const CLOSE: f64 = 1e-4;
+
+/// So often, at most.
+const PARABOLAS: usize = 3;
+
 /// Rows above this (scaled) do not hold a solution.
 const ACTIVE: f64 = 1e-6;
 
@@ -95,11 +101,17 @@ pub fn dips(cycle: &Cycle) -> Result<Dips, Undefined> {
                 let v = [0, 1, 2].map(|instant| values[instant][i]);
                 result.violation = result.violation.max(-v[1]);
                 // A dip inside the first or last interval shows in the parabola only.
-                let lowest = v[1] <= v[0] && v[1] < v[2] || k == 2 || k + 1 == instants.len();
-                if v[1] < NEAR && lowest {
+                let dips = v[1] <= v[0] && v[1] < v[2] || k == 2 || k + 1 == instants.len();
+                if v[1] < NEAR && dips {
                     let s = [k - 2, k - 1, k].map(|i| instants[i].0);
-                    let (at, value) = vertex(&s, &v);
+                    let (mut at, mut value) = vertex(&s, &v);
                     if at > s[0] && at < s[2] {
+                        if value < CLOSE {
+                            (at, value) = lowest(&s, &v, |s| {
+                                cycle.glance(phase, s, &mut glance)?;
+                                Ok(cycle.path(phase)[constraint].value(&glance.values))
+                            })?;
+                        }
                         result.violation = result.violation.max(-value);
                         result.found.push(Dip { phase, constraint, s: at, value });
                     }
@@ -156,6 +168,39 @@ fn comes_near([values, quartic]: [[f64; NODES]; 2]) -> bool {
     low - DOUBT * (high - low) < NEAR
 }
 
+/// Lowest point of a constraint with these values at three successive instants: of a few parabolas, each with the constraint's own
+/// value at the lowest point of the one before.
+fn lowest(
+    s: &[f64; 3],
+    v: &[f64; 3],
+    mut value: impl FnMut(f64) -> Result<f64, Undefined>,
+) -> Result<(f64, f64), Undefined> {
+    let (mut s, mut v) = (*s, *v);
+    for _ in 0..PARABOLAS {
+        let (at, _) = vertex(&s, &v);
+        if s.contains(&at) {
+            break;
+        }
+        let here = value(at)?;
+        // The lowest of the four is in the middle of the three that are kept.
+        let place = s.partition_point(|known| *known < at);
+        let middle = match here < v[1] {
+            true => place,
+            false if place < 2 => 2,
+            false => 1,
+        };
+        let with = |three: &[f64; 3], new: f64| {
+            let [a, b, c] = *three;
+            if place < 2 { [a, new, b, c] } else { [a, b, new, c] }
+        };
+        let (all_s, all_v) = (with(&s, at), with(&v, here));
+        for k in 0..3 {
+            (s[k], v[k]) = (all_s[middle - 1 + k], all_v[middle - 1 + k]);
+        }
+    }
+    Ok((s[1], v[1]))
+}
+
 /// Lowest point of the parabola through three points.
 fn vertex(s: &[f64; 3], v: &[f64; 3]) -> (f64, f64) {
     let (a, b) = ((v[1] - v[0]) / (s[1] - s[0]), (v[2] - v[1]) / (s[2] - s[1]));
@@ -167,4 +212,25 @@ fn vertex(s: &[f64; 3], v: &[f64; 3]) -> (f64, f64) {
     let at = (s[1] - slope / (2.0 * curvature)).clamp(s[0], s[2]);
     let d = at - s[1];
     (at, v[1] + slope * d + curvature * d * d)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What bends more and more is lowest elsewhere than a parabola through three of its points, and lower.
+    #[test]
+    fn the_lowest_point_is_that_of_the_constraint_itself() {
+        for (third, fourth) in [(0.0, 0.0), (30.0, 0.0), (-30.0, 400.0), (40.0, 800.0)] {
+            let curve =
+                |s: f64| 40.0 * (s - 0.0063).powi(2) * (1.0 + third * (s - 0.0063) + fourth * (s - 0.0063).powi(2));
+            let s = [0.0, 0.004, 0.01];
+            let v = s.map(curve);
+            let (_, by_parabola) = vertex(&s, &v);
+            let (at, value) = lowest(&s, &v, |s| Ok(curve(s))).unwrap();
+            assert_eq!(value, curve(at), "a value that it has");
+            assert!((0.0..1e-7).contains(&value), "what is left is no violation: {value:e}");
+            assert!(third == 0.0 || by_parabola.abs() > 1e-6, "a parabola alone would do: {by_parabola:e}");
+        }
+    }
 }
