@@ -19,6 +19,9 @@ pub trait Scalar:
     + Neg<Output = Self>
     + From<f64>
 {
+    /// Whether it stands for a set of numbers, which long calculations make wider than it must be.
+    const IS_SET: bool = false;
+
     fn sin_cos(self) -> (Self, Self);
     fn sqrt(self) -> Self;
     fn abs(self) -> Self;

@@ -27,6 +27,10 @@ use piaffe_number::Scalar;
 const TUBE: f64 = 1e-6;
 /// Pieces with a greater defect are halved; in the square of that unit.
 const DEFECT: f64 = 1e-9;
+/// What halving does not make smaller by this factor is rounding, of which halves have as much.
+const ROUNDING: f64 = 0.5;
+/// Share of the tube that it may fill over a phase.
+const FILLED: f64 = 1e-2;
 /// A phase begins with 2 to the power of this many pieces.
 const COARSEST: i32 = 3;
 /// No piece is smaller than 2 to the power of minus this, as a share of the phase.
@@ -72,21 +76,32 @@ pub fn enclose(description: &Description, phases: &[Course], index: usize) -> Re
     let mut solver = Solver::new(description, phases, index);
     let mut start = [course.beta_initial, course.betad_initial].map(Ball::from);
     let mut pieces = Vec::new();
-    // Shares of a power of two are exact: (how many of them lie before, power).
-    let mut ahead: Vec<(u32, i32)> = (0..1 << COARSEST).rev().map(|k| (k, COARSEST)).collect();
-    while let Some((k, level)) = ahead.pop() {
+    // Shares of a power of two are exact: how many of them lie before, the power, and what defect twice as long a piece had.
+    let mut ahead: Vec<(u32, i32, f64)> = (0..1 << COARSEST).rev().map(|k| (k, COARSEST, f64::INFINITY)).collect();
+    while let Some((k, level, whole)) = ahead.pop() {
         let half = 0.5_f64.powi(level + 1);
         let share = Model::polynomial(&[(2 * k + 1) as f64 * half, half]);
-        match solver.piece(share, half, start) {
-            Some(piece) => {
+        match solver.piece(share, half, start, whole) {
+            Ok(piece) => {
                 start = piece.beta.map(|b| b.at(1.0));
                 pieces.push(piece);
             }
-            None if level < FINEST => ahead.extend([(2 * k + 1, level + 1), (2 * k, level + 1)]),
-            None => return Err(Lost { share: 2.0 * k as f64 * half }),
+            Err(Unproven { defect }) if level < FINEST => {
+                ahead.extend([(2 * k + 1, level + 1, defect), (2 * k, level + 1, defect)]);
+            }
+            Err(_) => return Err(Lost { share: 2.0 * k as f64 * half }),
         }
     }
     Ok(pieces)
+}
+
+/// A piece has no proof, or none that is worth having; its defect, if it has one.
+struct Unproven {
+    defect: f64,
+}
+
+impl Unproven {
+    const ANYTHING: Unproven = Unproven { defect: f64::INFINITY };
 }
 
 /// The instants of phase `index` in numbers of any kind.
@@ -121,29 +136,43 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// The piece from `start`, with its proof; `half` is half its length as a share of the phase, a power of two.
-    fn piece(&mut self, share: Model, half: f64, start: [Ball; 2]) -> Option<Piece> {
+    /// The piece from `start`, with its proof; `half` is half its length as a share of the phase, a power of two, and `whole` the
+    /// defect of the piece that it is a half of.
+    fn piece(&mut self, share: Model, half: f64, start: [Ball; 2], whole: f64) -> Result<Piece, Unproven> {
         // Exact, since `half` is a power of two.
         let half_time = half * self.duration;
-        let acceleration = self.picard(share, half_time, start.map(Ball::value))?;
-        self.proven(acceleration, share, half_time, start)
+        let acceleration = self.picard(share, half_time, start.map(Ball::value)).ok_or(Unproven::ANYTHING)?;
+        self.proven(acceleration, share, half_time, start, whole)
     }
 
     /// What a polynomial for β̈ certainly is close to.
-    fn proven(&mut self, acceleration: Model, share: Model, half_time: f64, start: [Ball; 2]) -> Option<Piece> {
+    fn proven(
+        &mut self,
+        acceleration: Model,
+        share: Model,
+        half_time: f64,
+        start: [Ball; 2],
+        whole: f64,
+    ) -> Result<Piece, Unproven> {
         let rate = Model::from(start[1].value()) + acceleration.integral() * half_time.into();
         let beta = Model::from(start[0].value()) + rate.integral() * half_time.into();
 
         let t = share * self.duration.into();
         let (_, state, gradient_state) = &mut self.states;
-        let defect = (acceleration - self.model.accelerate(t, [beta, rate], state)?).magnitude();
-        if defect.is_nan() || defect > DEFECT * self.rate * self.rate {
-            return None;
+        let exact = self.model.accelerate(t, [beta, rate], state).ok_or(Unproven::ANYTHING)?;
+        let defect = (acceleration - exact).magnitude();
+        if !defect.is_finite() {
+            return Err(Unproven::ANYTHING);
+        }
+        let is_rounding = defect >= ROUNDING * whole && defect * self.duration <= FILLED * TUBE * self.rate;
+        if defect > DEFECT * self.rate * self.rate && !is_rounding {
+            return Err(Unproven { defect });
         }
         let widths = [TUBE, TUBE * self.rate];
         let variable = |x: Model, k: usize| Gradient::variable(x.cast().widened(widths[k]), k);
         let tube = [variable(beta, 0), variable(rate, 1)];
-        let slopes = self.gradient.accelerate(Dual::constant(t.cast()), tube, gradient_state)?;
+        let slopes = self.gradient.accelerate(Dual::constant(t.cast()), tube, gradient_state);
+        let slopes = slopes.ok_or(Unproven { defect })?;
         let [a, b] = slopes.d.map(|d| d.magnitude());
 
         let h = 2.0 * half_time;
@@ -152,8 +181,8 @@ impl<'a> Solver<'a> {
         let room = (1.0 - above(h * b + h * h * a)) * (1.0 - 1e-13);
         let v = above((ed + h * (defect + a * e)) / room);
         let u = above(e + h * v);
-        (room >= 0.5 && u <= widths[0] && v <= widths[1])
-            .then(|| Piece { share, beta: [beta.widened(u), rate.widened(v)] })
+        let proven = room >= 0.5 && u <= widths[0] && v <= widths[1];
+        if proven { Ok(Piece { share, beta: [beta.widened(u), rate.widened(v)] }) } else { Err(Unproven { defect }) }
     }
 
     /// A polynomial for β̈ that need not be exact.
@@ -241,7 +270,8 @@ mod tests {
             let share = Model::polynomial(&[half, half]);
             let half_time = half * h.duration;
             let exactly = |shift: [f64; 2]| [h.beta_initial + shift[0], h.betad_initial + shift[1]].map(Ball::from);
-            let exact = solver.piece(share, half, exactly([0.0; 2])).unwrap();
+            let once = f64::INFINITY;
+            let exact = solver.piece(share, half, exactly([0.0; 2]), once).ok().unwrap();
             assert!(exact.beta[0].rest() < 1e-13 && exact.beta[1].rest() < 1e-12);
 
             // A polynomial that is off gives a wider proof, not a wrong one.
@@ -249,18 +279,18 @@ mod tests {
             let unit = solver.rate * solver.rate;
             for spoilt in [[8e-10, 0.0, 0.0], [0.0, -5e-10, 0.0], [3e-10, 0.0, 4e-10]] {
                 let spoilt = Model::polynomial(&spoilt.map(|x| x * unit));
-                let found = solver.proven(good + spoilt, share, half_time, exactly([0.0; 2])).unwrap();
+                let found = solver.proven(good + spoilt, share, half_time, exactly([0.0; 2]), once).ok().unwrap();
                 meet(&found, &exact);
             }
-            assert!(solver.proven(good + Model::from(1e-6 * unit), share, half_time, exactly([0.0; 2])).is_none());
+            assert!(solver.proven(good + Model::from(1e-6 * unit), share, half_time, exactly([0.0; 2]), once).is_err());
 
             // A start that is known up to a ball leads wherever it leads from anywhere in it.
             let reach = [1e-9, 1e-8];
             let around = std::array::from_fn(|k| exactly([0.0; 2])[k].widened(reach[k]));
-            let found = solver.piece(share, half, around).unwrap();
+            let found = solver.piece(share, half, around, once).ok().unwrap();
             for signs in [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]] {
                 let shift = std::array::from_fn(|k| 0.999 * signs[k] * reach[k]);
-                meet(&found, &solver.piece(share, half, exactly(shift)).unwrap());
+                meet(&found, &solver.piece(share, half, exactly(shift), once).ok().unwrap());
             }
         }
     }

@@ -36,6 +36,8 @@ impl<const N: usize> Taylor<N> {
 }
 
 impl<const N: usize> Scalar for Taylor<N> {
+    const IS_SET: bool = true;
+
     fn sin_cos(self) -> (Self, Self) {
         let [mut sin, mut cos] = [Self::zero(); 2];
         (sin.c[0], cos.c[0]) = libm::sincos(self.c[0]);
