@@ -1,10 +1,13 @@
 //! Searches: as wide as the evidence asks for, with the same result whoever counts the threads.
 
-use piaffe::gaits::GAITS;
+use piaffe::altered::Altered;
+use piaffe::gaits::{GAITS, curvet::Curvet};
 use piaffe::model::Gait;
 use piaffe::motion::Criterion;
 use piaffe::search::evidence::Effort;
-use piaffe::search::multi_start::{Found, Settings, search};
+use piaffe::search::local::Task;
+use piaffe::search::multi_start::{Found, Settings, search, start};
+use piaffe::sqp::Control;
 
 fn named(name: &str) -> &'static dyn Gait {
     GAITS.iter().copied().find(|g| g.description().key == name).unwrap()
@@ -55,4 +58,21 @@ fn optima_that_few_starts_reach_are_found() {
     assert!(best.local.costs.torque < 960.0, "{} {:?}", best.local.costs.torque, found.effort);
     let Effort { starts, successes, .. } = found.effort;
     assert!(4 * best.reached < successes && starts > 2 * 8, "{} {:?}", best.reached, found.effort);
+}
+
+/// The swing foot's room is a quotient that is 0/0 where the step begins: a row between nodes that is lowest there has the value of the
+/// node, not one of a look at that instant.
+#[test]
+fn a_row_that_is_lowest_at_an_end_has_the_value_there() {
+    let curvet = Altered::of_order(&Curvet, 8);
+    let task = Task { gait: &curvet, criterion: Criterion::Torque, speed: 0.6 };
+    for k in [0, 3] {
+        let found = task.descend(&start(&curvet, task.criterion, task.speed, 1, k), &mut |_| Control::Continue);
+        assert!(
+            found.status.is_optimal() && found.costs.torque < 312.7,
+            "start {k}: {:?} {}",
+            found.status,
+            found.costs.torque
+        );
+    }
 }

@@ -343,8 +343,13 @@ impl<'a> Cycle<'a> {
             let dip = &p.dips[k];
             let constraint = &p.path[dip.constraint];
             let lowest = p.lowest(constraint, dip.element, dip.lowest.at);
-            p.glance(self.gait, (dip.element as f64 + lowest.at) / p.mesh.elements as f64, &mut glance)?;
-            let offset = constraint.value(&glance.values) - lowest.value;
+            // At an end of the element the quartic has the constraint's own value, which may be a limit that no glance can take.
+            let offset = if lowest.at == 0.0 || lowest.at == 1.0 {
+                0.0
+            } else {
+                p.glance(self.gait, (dip.element as f64 + lowest.at) / p.mesh.elements as f64, &mut glance)?;
+                constraint.value(&glance.values) - lowest.value
+            };
             let dip = &mut self.phases[phase].dips[k];
             (dip.offset, dip.lowest) = (offset, lowest);
         }
