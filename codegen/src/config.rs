@@ -180,9 +180,13 @@ fn robots(root: &Path, folder: &Path) -> Result<Vec<RobotFiles>, String> {
 }
 
 fn robot_files(root: &Path, folder: &Path, module: String) -> Result<RobotFiles, String> {
+    if !root.join(folder).is_dir() {
+        return Err(format!("there is no folder {}: a robot's has robot.toml and gaits/*.toml", folder.display()));
+    }
     let gaits = folder.join("gaits");
     let mut files = Vec::new();
-    for path in entries(root, &gaits)? {
+    let there = if root.join(&gaits).exists() { entries(root, &gaits)? } else { Vec::new() };
+    for path in there {
         if path.extension().is_some_and(|e| e == "toml") {
             files.push(read(root, &path)?);
         }
@@ -583,7 +587,10 @@ fn read(root: &Path, path: &Path) -> Result<SpecFile, String> {
     let cannot = |why: &dyn std::fmt::Display| format!("cannot read the specification {}: {why}", path.display());
     let mut text = String::new();
     let file = fs::File::open(root.join(path)).map_err(|e| cannot(&e))?;
-    let length = file.take(LARGEST + 1).read_to_string(&mut text).map_err(|e| cannot(&e))?;
+    let length = file.take(LARGEST + 1).read_to_string(&mut text).map_err(|e| match e.kind() {
+        io::ErrorKind::InvalidData => cannot(&"it is no text in UTF-8: save it as that"),
+        _ => cannot(&e),
+    })?;
     if length as u64 > LARGEST {
         return Err(cannot(&format!("it has more than {} MB", LARGEST >> 20)));
     }

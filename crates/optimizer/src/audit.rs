@@ -105,7 +105,9 @@ impl Audit {
             }
         };
         let of_search = "how it was found, which a motion does not show";
-        statements.extend(history.iter().map(|(key, _)| match contradicted(key, result) {
+        // What the motion costs, if that is known: a cost that is wrong is refuted by itself.
+        let cost = found.ok().and_then(|found| found.cost).or(result.cost);
+        statements.extend(history.iter().map(|(key, _)| match contradicted(key, result, cost) {
             Some(reason) => Statement::whole(key, Verdict::NotConfirmed, reason),
             None => Statement::not_derivable(key, of_search),
         }));
@@ -180,11 +182,11 @@ fn said_absent<'a>(
 }
 
 /// What is wrong with the search's account, as far as the result itself shows it.
-fn contradicted(entry: &str, result: &GaitResult) -> Option<String> {
+fn contradicted(entry: &str, result: &GaitResult, cost: Option<f64>) -> Option<String> {
     let found = &result.local_optima;
     let effort = &result.search.effort;
     let near = |a: f64, b: f64| (a - b).abs() <= SAME_OPTIMUM * a.abs().max(b.abs());
-    match (entry, result.cost) {
+    match (entry, cost) {
         ("local_optima", _) if result.variables.is_empty() => Some("there is no motion, and these were found".into()),
         ("local_optima", Some(cost)) if found.iter().all(|optimum| !near(optimum.cost, cost)) => {
             Some(format!("the optimum, which costs {cost}, is none of those that were found"))
