@@ -6,8 +6,7 @@ use anyhow::{Context, bail};
 use piaffe_codegen::RobotFiles;
 use serde::de::{DeserializeOwned, Error, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
-use serde_json::Value;
-use std::collections::HashSet;
+use serde_json::{Map, Value};
 use std::fmt;
 use std::io::Read;
 use std::path::Path;
@@ -77,10 +76,9 @@ pub fn parse_json<T: DeserializeOwned>(file: &Path, text: &str) -> anyhow::Resul
         let excerpt: String = excerpt.chars().skip(start).take(60).collect();
         anyhow::anyhow!("{name}:{}:{}: {}\n  | {}", e.line(), e.column(), line(&e.to_string()), line(&excerpt))
     };
-    // These for their places in errors; what is used is read from the harmless value.
-    let Unique = serde_json::from_str(text).map_err(at)?;
+    let Unique(mut value) = serde_json::from_str(text).map_err(at)?;
+    // For its places in errors; what is used is read from the harmless value.
     drop(serde_json::from_str::<T>(text).map_err(at)?);
-    let mut value: Value = serde_json::from_str(text).map_err(at)?;
     disarm(&mut value);
     serde_json::from_value(value).with_context(|| name.clone())
 }
@@ -89,60 +87,65 @@ pub fn parse_json<T: DeserializeOwned>(file: &Path, text: &str) -> anyhow::Resul
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
 /// JSON in which no key stands twice: who reads the first and who reads the last would read different things.
-struct Unique;
+struct Unique(Value);
 
 impl<'de> Deserialize<'de> for Unique {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Unique, D::Error> {
-        deserializer.deserialize_any(Unique)
+        deserializer.deserialize_any(AnyJson).map(Unique)
     }
 }
 
-impl<'de> Visitor<'de> for Unique {
-    type Value = Unique;
+struct AnyJson;
+
+impl<'de> Visitor<'de> for AnyJson {
+    type Value = Value;
 
     fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str("JSON")
     }
 
-    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Unique, A::Error> {
-        let mut known = HashSet::new();
-        while let Some(key) = map.next_key::<String>()? {
-            if known.contains(&key) {
+    fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Value, A::Error> {
+        let mut map = Map::new();
+        while let Some(key) = entries.next_key::<String>()? {
+            if map.contains_key(&key) {
                 return Err(A::Error::custom(format!("duplicate field `{key}`")));
             }
-            known.insert(key);
-            map.next_value::<Unique>()?;
+            let Unique(value) = entries.next_value()?;
+            map.insert(key, value);
         }
-        Ok(Unique)
+        Ok(map.into())
     }
 
-    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Unique, A::Error> {
-        while list.next_element::<Unique>()?.is_some() {}
-        Ok(Unique)
+    fn visit_seq<A: SeqAccess<'de>>(self, mut elements: A) -> Result<Value, A::Error> {
+        let mut list = Vec::new();
+        while let Some(Unique(value)) = elements.next_element()? {
+            list.push(value);
+        }
+        Ok(list.into())
     }
 
-    fn visit_bool<E>(self, _: bool) -> Result<Unique, E> {
-        Ok(Unique)
+    fn visit_bool<E>(self, value: bool) -> Result<Value, E> {
+        Ok(value.into())
     }
 
-    fn visit_i64<E>(self, _: i64) -> Result<Unique, E> {
-        Ok(Unique)
+    fn visit_i64<E>(self, value: i64) -> Result<Value, E> {
+        Ok(value.into())
     }
 
-    fn visit_u64<E>(self, _: u64) -> Result<Unique, E> {
-        Ok(Unique)
+    fn visit_u64<E>(self, value: u64) -> Result<Value, E> {
+        Ok(value.into())
     }
 
-    fn visit_f64<E>(self, _: f64) -> Result<Unique, E> {
-        Ok(Unique)
+    fn visit_f64<E>(self, value: f64) -> Result<Value, E> {
+        Ok(value.into())
     }
 
-    fn visit_str<E>(self, _: &str) -> Result<Unique, E> {
-        Ok(Unique)
+    fn visit_str<E>(self, value: &str) -> Result<Value, E> {
+        Ok(value.into())
     }
 
-    fn visit_unit<E>(self) -> Result<Unique, E> {
-        Ok(Unique)
+    fn visit_unit<E>(self) -> Result<Value, E> {
+        Ok(Value::Null)
     }
 }
 

@@ -353,15 +353,13 @@ impl Subject {
     }
 
     /// The command without the options that mean nothing there: who uses one all the same is told so.
-    fn hide_from(self, command: clap::Command) -> clap::Command {
-        let options = Asked::augment_args(clap::Command::new("")).get_arguments().cloned().collect::<Vec<_>>();
-        let robot = Arguments::command().get_arguments().filter(|arg| arg.get_id() == "robot").cloned().collect();
+    fn hide_from(self, command: clap::Command, robot: &[clap::Arg], changes: &[clap::Arg]) -> clap::Command {
         let meaningless = match self {
-            Subject::Gaits => Vec::new(),
-            Subject::Results => options,
-            Subject::Else => [options, robot].concat(),
+            Subject::Gaits => return command,
+            Subject::Results => changes.to_vec(),
+            Subject::Else => [robot, changes].concat(),
         };
-        command.args(meaningless.into_iter().map(|arg: clap::Arg| arg.global(false).hide(true)))
+        command.args(meaningless.into_iter().map(|arg| arg.global(false).hide(true)))
     }
 }
 
@@ -387,8 +385,11 @@ impl Arguments {
 
 /// The command line itself.
 fn command() -> clap::Command {
-    let own = |command: clap::Command| Subject::of(command.get_name()).hide_from(command);
-    with_negative_numbers(Arguments::command().mut_subcommands(own))
+    let whole = Arguments::command();
+    let robot: Vec<clap::Arg> = whole.get_arguments().filter(|arg| arg.get_id() == "robot").cloned().collect();
+    let changes: Vec<clap::Arg> = Asked::augment_args(clap::Command::new("")).get_arguments().cloned().collect();
+    let own = |command: clap::Command| Subject::of(command.get_name()).hide_from(command, &robot, &changes);
+    with_negative_numbers(whole.mut_subcommands(own))
 }
 
 /// A number with a sign is a value, which can be wrong as a value, and no option that nobody knows.

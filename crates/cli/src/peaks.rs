@@ -4,7 +4,6 @@ use super::digits::{at_least, decimal};
 use piaffe_model::{Description, Joint};
 use piaffe_verify::JointPeak;
 use std::f64::consts::TAU;
-use std::fmt::Write;
 
 /// What is less than this share of its limit is rounding.
 const ROUNDING: f64 = 1e-9;
@@ -14,22 +13,17 @@ const HEADINGS: [&str; 4] =
 
 /// A line for each joint, as wide as its longest name and numbers ask for; nothing of none.
 pub fn table(description: &Description, peaks: &[JointPeak]) -> String {
-    let mut text = String::new();
     if peaks.is_empty() {
-        return text;
+        return String::new();
     }
-    let rows: Vec<[String; 4]> =
-        peaks.iter().zip(description.joints.iter()).map(|(peak, joint)| row(peak, joint)).collect();
-    let width = |k: usize| {
-        rows.iter().map(|row| &row[k]).chain([&HEADINGS[k].to_string()]).map(|cell| cell.chars().count()).max()
+    let of_joints = peaks.iter().zip(description.joints.iter()).map(|(peak, joint)| row(peak, joint));
+    let rows: Vec<[String; 4]> = std::iter::once(HEADINGS.map(String::from)).chain(of_joints).collect();
+    let [name, torque, speed, margin] =
+        [0, 1, 2, 3].map(|k| rows.iter().map(|row| row[k].chars().count()).fold(0, usize::max));
+    let line = |[first, second, third, fourth]: &[String; 4]| {
+        format!("  {first:<name$}  {second:>torque$}  {third:>speed$}  {fourth:>margin$}\n")
     };
-    let [name, torque, speed, margin] = [0, 1, 2, 3].map(|k| width(k).unwrap_or(0));
-    let mut line = |[first, second, third, fourth]: &[String; 4]| {
-        let _ = writeln!(text, "  {first:<name$}  {second:>torque$}  {third:>speed$}  {fourth:>margin$}");
-    };
-    line(&HEADINGS.map(String::from));
-    rows.iter().for_each(line);
-    text
+    rows.iter().map(line).collect()
 }
 
 fn row(peak: &JointPeak, joint: &Joint) -> [String; 4] {

@@ -7,6 +7,7 @@
 
 use super::harmless::line;
 use anyhow::Context;
+use std::collections::BTreeSet;
 use std::ffi::OsStr;
 use std::fs::{File, OpenOptions, Permissions};
 use std::io::{Error, ErrorKind, Result, Write};
@@ -14,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 /// Files that this run was given to read.
-static GIVEN: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+static GIVEN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 /// From now on a file is not written over, by whatever name.
 pub fn protect(path: &Path) {

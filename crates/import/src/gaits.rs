@@ -219,15 +219,15 @@ fn round(x: f64) -> String {
 }
 
 fn locked(robot: &Robot) -> String {
-    let held: Vec<String> = held(robot).iter().map(|(joint, angle)| format!("{joint} = {angle}")).collect();
+    let held = held(robot);
     if held.is_empty() { String::new() } else { format!("locked = {{ {} }}\n", held.join(", ")) }
 }
 
 /// Joints that a gait in the plane holds still, each at the angle nearest to zero: those that leave the plane, and those below the
 /// second one that swings.
-pub fn held(robot: &Robot) -> Vec<(&str, String)> {
+pub fn held(robot: &Robot) -> Vec<String> {
     let held = robot.legs.iter().flat_map(still);
-    held.map(|j| (j.name.as_str(), number(0.0f64.clamp(j.range[0], j.range[1])))).collect()
+    held.map(|j| format!("{} = {}", j.name, number(0.0f64.clamp(j.range[0], j.range[1])))).collect()
 }
 
 /// Joints of a leg that a gait in the plane holds still.

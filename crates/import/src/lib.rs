@@ -304,11 +304,10 @@ fn remarks(model: &Model, robot: &robot::Robot, notes: &mut Vec<String>) {
         notes.push(format!("leg `{}` ends in a point: {}", leg.name, leg.foot));
     }
     if robot.gravity.is_none() {
-        notes.push(format!("gravity is taken to be {} m/s²", write::EARTH));
+        notes.push(format!("gravity is taken to be {} m/s²", model::EARTH));
     }
     let held = gaits::held(robot);
     if !held.is_empty() {
-        let held: Vec<String> = held.iter().map(|(joint, angle)| format!("{joint} = {angle}")).collect();
         notes.push(format!(
             "the gaits hold still what leaves their plane, and what swings below the second joint that does: {} rad; \
              take from `locked` in gaits/ what is to swing freely",

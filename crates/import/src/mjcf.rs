@@ -2,15 +2,12 @@
 //! which all of them take their defaults.
 
 use super::fault::{Faults, Kind, Place};
-use super::model::{Format, Friction, Joint, Kind as JointKind, Link, Mass, Model, Shape, Solid};
+use super::model::{EARTH, Format, Friction, Joint, Kind as JointKind, Link, Mass, Model, Shape, Solid};
 use super::xml::{File, child, children, plain};
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
 use roxmltree::Node;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
-
-/// m/s², where the file says nothing else.
-const GRAVITY: f64 = 9.81;
 
 /// kg/m³ of a geom that says nothing else.
 const DENSITY: f64 = 1000.0;
@@ -443,7 +440,7 @@ impl<'a, 't, 'f> Reader<'a, 't, 'f> {
     /// Its size, m/s²; none where the file has no weight.
     fn gravity(&mut self, root: Node<'a, 't>) -> Option<f64> {
         let given = children(root, "option").filter(|option| option.has_attribute("gravity")).last();
-        let Some(option) = given else { return Some(GRAVITY) };
+        let Some(option) = given else { return Some(EARTH) };
         let of = Styled { node: option, tag: "option", class: "main".into() };
         let down = Vector3::from(self.numbers::<3>(&of, "gravity")?);
         let size = down.norm();

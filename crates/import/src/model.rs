@@ -3,6 +3,9 @@
 use super::fault::Place;
 use nalgebra::{Isometry3, Matrix3, Vector3};
 
+/// Gravity where a file says nothing else, m/s².
+pub const EARTH: f64 = 9.81;
+
 /// A robot as its file has it.
 pub struct Model {
     pub name: String,

@@ -1,14 +1,11 @@
 //! The specification's text.
 
 use super::Rigid;
-use super::model::Format;
+use super::model::{EARTH, Format};
 use super::robot::{Joint, Leg, Motor, Robot};
 use super::words::identifier;
 use nalgebra::Vector3;
 use std::fmt::Write;
-
-/// Gravity where the file gives none, m/s².
-pub const EARTH: f64 = 9.81;
 
 const AXES: [&str; 3] = ["roll", "yaw", "pitch"];
 
