@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::{BTreeMap, HashMap};
 use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{Read, Write};
+use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -105,9 +105,12 @@ impl Folder {
             let d = gait.description();
             for speed in speeds {
                 let path = self.path.join(file_name(d.key, criterion, *speed, d.limits.real_legs));
-                let Ok(text) = std::fs::read(&path) else { continue };
-                if let Err(error) = serde_json::from_slice::<GaitResult>(&text) {
-                    note(&format!("{} is damaged ({error}): it is written anew", input::name(&path)));
+                let damage = match std::fs::read_to_string(&path) {
+                    Ok(text) => serde_json::from_str::<GaitResult>(&text).err().map(|error| error.to_string()),
+                    Err(error) => (error.kind() != ErrorKind::NotFound).then(|| error.to_string()),
+                };
+                if let Some(damage) = damage {
+                    note(&format!("{} is damaged ({damage}): it is written anew", input::name(&path)));
                 }
             }
         }

@@ -89,8 +89,8 @@ pub fn run(arguments: Arguments, changes: &Changes) -> anyhow::Result<bool> {
     let points = shard.points(&study);
     let folder = Folder::open(&path, progress(points.len()))?;
     whole::check(&path.join(TABLE))?;
-    let own = std::fs::read(path.join(ASKED)).ok();
-    if let Some(earlier) = own.and_then(|text| serde_json::from_slice::<Asked>(&text).ok())
+    let own = std::fs::read_to_string(path.join(ASKED)).ok();
+    if let Some(earlier) = own.and_then(|text| serde_json::from_str::<Asked>(&text).ok())
         && earlier.question.fingerprint != asked.question.fingerprint
     {
         output::note(&format!("the last study in {} was another one: all is answered anew", input::name(&path)));
