@@ -105,7 +105,7 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
             writeln!(out, "  {:<34} phase {}, t = {} s: {what}", c.constraint, c.phase, decimal(c.time, 3))?;
         }
     }
-    if r.status == Status::Infeasible {
+    if r.status == Status::Infeasible && description.contradictions().is_empty() {
         match r.nearest_speed {
             Some(v) => writeln!(out, "  The nearest speed that works is {v} m/s.")?,
             None => writeln!(out, "  No speed was found that works: loosen one of these limits in the specification.")?,
@@ -196,7 +196,9 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
     for NotExamined { entry, reason } in &r.not_examined {
         writeln!(out, "  not examined    {} ({reason})", entry.replace('_', " "))?;
     }
-    writeln!(out, "  search          {}", confidence(r))?;
+    if description.contradictions().is_empty() {
+        writeln!(out, "  search          {}", confidence(r))?;
+    }
     if r.local_optima.len() > 1 {
         writeln!(out, "  local optima    (cost, phases, how many starts led there)")?;
         for o in &r.local_optima {

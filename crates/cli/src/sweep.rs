@@ -5,8 +5,8 @@ use super::document::OVERVIEW;
 use super::journal::{Folder, effort};
 use super::{output, report, speed};
 use indicatif::{ProgressBar, ProgressStyle};
-use piaffe_model::Gait;
 use piaffe_model::motion::Criterion;
+use piaffe_model::{Contradiction, Gait};
 use piaffe_optimizer::altered::Altered;
 use piaffe_optimizer::examine::Examination;
 use piaffe_optimizer::result::GaitResult;
@@ -135,6 +135,11 @@ impl Line {
         self.results.par_iter_mut().flatten().for_each(|result| result.examine(gait, examination));
     }
 
+    /// What keeps the gait from any motion, at whatever speed.
+    fn contradictions(&self) -> Vec<Contradiction> {
+        self.gait.description().contradictions()
+    }
+
     fn records(&self) -> Vec<Record<'static>> {
         self.results.iter().flatten().map(|r| Record::issued(r.clone(), self.gait)).collect()
     }
@@ -162,7 +167,8 @@ fn tell(lines: &[Line], criteria: &[Criterion], speeds: &[f64], overview: &Overv
     speeds.sort_by(f64::total_cmp);
     speeds.dedup();
     out.write_all(table(lines, criteria, &speeds).as_bytes())?;
-    for hole in lines.iter().flat_map(|line| line.results.iter().flatten()).filter(|r| !r.is_optimal()) {
+    let told = |line: &&Line| line.contradictions().is_empty();
+    for hole in lines.iter().filter(told).flat_map(|line| line.results.iter().flatten()).filter(|r| !r.is_optimal()) {
         writeln!(out, "{}, {} at {} m/s: {}", hole.gait, hole.criterion.name(), hole.speed, hole.message)?;
     }
     for line in lines {
@@ -176,7 +182,8 @@ fn tell(lines: &[Line], criteria: &[Criterion], speeds: &[f64], overview: &Overv
             None if line.results.iter().flatten().any(GaitResult::is_optimal) => {
                 writeln!(out, "{name}: no greatest speed found")?;
             }
-            None => writeln!(out, "{name}: no optimum at any of these speeds")?,
+            None if line.contradictions().is_empty() => writeln!(out, "{name}: no optimum at any of these speeds")?,
+            None => line.contradictions().iter().try_for_each(|why| writeln!(out, "{name}: {why}"))?,
         }
     }
     for comparison in &overview.comparisons {

@@ -6,6 +6,7 @@ use super::local::{Conflict, Local, Task};
 use super::multi_start::{Expected, Settings, search, start};
 use crate::result::GaitResult;
 use piaffe_model::Gait;
+use piaffe_model::digits::legible;
 use piaffe_model::motion::Criterion;
 use piaffe_model::units::Units;
 use piaffe_sqp::Control;
@@ -158,6 +159,9 @@ fn attempt(gait: &dyn Gait, speed: f64, from: Option<&[f64]>, settings: &Setting
 /// local searches can tell. Looks for motions at speeds ever further off on both sides, and if there seem to be none for optima, which
 /// takes longer; then bisects from what was found, and asks there.
 pub fn nearest_speed(gait: &dyn Gait, criterion: Criterion, speed: f64, settings: &Settings) -> Option<f64> {
+    if !gait.description().contradictions().is_empty() {
+        return None;
+    }
     let few = Settings { starts: Some(settings.starts.unwrap_or(STARTS).min(3)), ..settings.clone() };
     let wide = Settings { starts: Some(settings.starts.unwrap_or(WIDE).min(WIDE)), ..settings.clone() };
     let motion = |speed: f64| Some(attempt(gait, speed, None, &few)).filter(|local| local.status.is_optimal());
@@ -218,11 +222,4 @@ fn answered(gait: &dyn Gait, criterion: Criterion, [asked, good]: [f64; 2], sett
         distance *= 2.0;
     }
     None
-}
-
-/// A positive number with four digits, rounded up or down: what is printed is what was tried.
-fn legible(number: f64, up: bool) -> f64 {
-    let unit = 10f64.powf(number.log10().floor() - 3.0);
-    let digits = if up { (number / unit).ceil() } else { (number / unit).floor() };
-    format!("{:.3e}", digits * unit).parse().unwrap_or(number)
 }
