@@ -2,11 +2,11 @@
 
 use super::digits::decimal;
 use super::journal::Folder;
+use super::progress::{Counted, Progress};
 use super::robots::Wanted;
 use super::{criteria, gait_names_or_all, input, output, report, robots, sweep, whole};
 use anyhow::{Context, bail};
 use clap::builder::PossibleValuesParser;
-use indicatif::{ProgressBar, ProgressStyle};
 use piaffe_codegen::Changes;
 use piaffe_optimizer::search::journal::Journal;
 use piaffe_report::space::{Space, Spot};
@@ -87,7 +87,7 @@ pub fn run(arguments: Arguments, changes: &Changes) -> anyhow::Result<bool> {
     let study = asked(arguments, changes)?;
     let asked = Asked { shard, question: Question::from(&study) };
     let points = shard.points(&study);
-    let folder = Folder::open(&path, progress(points.len()))?;
+    let folder = Folder::open(&path, Progress::new(Counted::Rows(points.len())).of("rows"))?;
     whole::check(&path.join(TABLE))?;
     let own = std::fs::read(path.join(ASKED)).ok();
     if let Some(earlier) = own.and_then(|text| serde_json::from_slice::<Asked>(&text).ok())
@@ -254,10 +254,4 @@ fn tell(study: &Study, rows: &[Row]) -> std::io::Result<()> {
     let starts = study.search.starts.unwrap_or(piaffe_study::FEW);
     let from = if starts == 1 { "a start that knows".into() } else { format!("{starts} starts that know") };
     writeln!(out, "Every optimum is local: the best from the base robot's optima and {from} nothing of them.")
-}
-
-fn progress(rows: usize) -> ProgressBar {
-    let style = ProgressStyle::with_template("{msg} {bar:30} {pos}/{len} {elapsed}, about {eta} left");
-    let bar = if output::is_quiet() { ProgressBar::hidden() } else { ProgressBar::new(rows as u64) };
-    bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())).with_message("rows")
 }

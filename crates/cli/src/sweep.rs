@@ -3,8 +3,8 @@
 use super::digits::decimal;
 use super::document::OVERVIEW;
 use super::journal::{Folder, effort};
+use super::progress::{Counted, Progress};
 use super::{output, report, speed};
-use indicatif::{ProgressBar, ProgressStyle};
 use piaffe_model::motion::Criterion;
 use piaffe_model::{Contradiction, Gait};
 use piaffe_optimizer::altered::Altered;
@@ -39,7 +39,8 @@ pub fn run(
 ) -> anyhow::Result<bool> {
     let gaits = &if real_legs { at_real_legs(gaits)? } else { gaits.to_vec() };
     let visits = VISITS * (criteria.len() * speeds.len()) as u64;
-    let folder = Folder::open(path, progress(gaits.iter().map(|g| visits * effort(*g)).sum()))?;
+    let work = gaits.iter().map(|g| visits * effort(*g)).sum();
+    let folder = Folder::open(path, Progress::new(Counted::Work(work)).of("optima"))?;
     folder.compare(&gaits.iter().map(|g| *g as &dyn Gait).collect::<Vec<_>>(), criteria, speeds, settings);
     let of_gait = |gait: &&'static dyn Gait| atlas::Line {
         gait: *gait,
@@ -152,13 +153,6 @@ fn ends(lines: &[Line]) -> Vec<Greatest> {
         Some(Greatest { gait: line.gait.description().key.into(), speed, ended_by })
     };
     lines.iter().filter_map(end).collect()
-}
-
-/// A bar in units of effort, with what is left; hidden where standard error is no terminal.
-fn progress(effort: u64) -> ProgressBar {
-    let style = ProgressStyle::with_template("{msg} {bar:30} {percent} % {elapsed}, about {eta} left");
-    let bar = if output::is_quiet() { ProgressBar::hidden() } else { ProgressBar::new(effort) };
-    bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())).with_message("optima")
 }
 
 fn tell(lines: &[Line], criteria: &[Criterion], speeds: &[f64], overview: &Overview) -> std::io::Result<()> {
