@@ -8,6 +8,7 @@ use super::{criteria, gait_names_or_all, input, output, report, robots, sweep, w
 use anyhow::{Context, bail};
 use clap::builder::PossibleValuesParser;
 use piaffe_codegen::Changes;
+use piaffe_model::digits::digits;
 use piaffe_optimizer::search::journal::Journal;
 use piaffe_report::space::{Space, Spot};
 use piaffe_report::{Extremes, Record, Report};
@@ -236,14 +237,15 @@ fn tell(study: &Study, rows: &[Row]) -> std::io::Result<()> {
         let point = study.point(first);
         let same = || rows.iter().filter(|row| row.point % study.of_design() == first);
         let optimal = same().filter(|row| row.optimum.is_some()).count();
-        write!(out, "{}, least {} at {} m/s: ", point.gait, point.criterion.name(), point.speed)?;
+        write!(out, "{}, least {} at {} m/s: ", point.gait, point.criterion.name(), digits(point.speed))?;
         write!(out, "{optimal} of {} robots have an optimum", same().count())?;
         let best = same().filter_map(|row| Some((row, row.cost()?))).min_by(|a, b| a.1.total_cmp(&b.1));
         let Some((best, cost)) = best else {
             writeln!(out)?;
             continue;
         };
-        let with = study.designs.names().iter().zip(&best.numbers).map(|(name, number)| format!("{name}={number}"));
+        let with =
+            study.designs.names().iter().zip(&best.numbers).map(|(name, number)| format!("{name}={}", digits(*number)));
         let with: Vec<String> = with.collect();
         let with = if with.is_empty() { String::new() } else { format!(" with {}", with.join(" ")) };
         writeln!(out, "; best {} {}{with} (design {})", decimal(cost, 4), point.criterion.unit(), best.design)?;

@@ -5,6 +5,7 @@ use super::document::OVERVIEW;
 use super::journal::{Folder, effort};
 use super::progress::{Counted, Progress};
 use super::{output, report, speed};
+use piaffe_model::digits::digits;
 use piaffe_model::motion::Criterion;
 use piaffe_model::{Contradiction, Gait};
 use piaffe_optimizer::altered::Altered;
@@ -163,7 +164,7 @@ fn tell(lines: &[Line], criteria: &[Criterion], speeds: &[f64], overview: &Overv
     out.write_all(table(lines, criteria, &speeds).as_bytes())?;
     let told = |line: &&Line| line.contradictions().is_empty();
     for hole in lines.iter().filter(told).flat_map(|line| line.results.iter().flatten()).filter(|r| !r.is_optimal()) {
-        writeln!(out, "{}, {} at {} m/s: {}", hole.gait, hole.criterion.name(), hole.speed, hole.message)?;
+        writeln!(out, "{}, {} at {} m/s: {}", hole.gait, hole.criterion.name(), digits(hole.speed), hole.message)?;
     }
     for line in lines {
         let name = line.gait.description().key;
@@ -243,6 +244,7 @@ pub fn parse_speeds(text: &str) -> Result<Vec<f64>, String> {
         let (from, to) = range.split_once("..").ok_or("a range reads FROM..TO:STEP, for example 0.1..1.6:0.1")?;
         let (from, to, step) = (number(from)?, number(to)?, number(step)?);
         if to < from {
+            let [to, from, step] = [to, from, step].map(digits);
             return Err(format!("the range ends below its beginning: write {to}..{from}:{step}"));
         }
         let count = steps(from, to, step);
@@ -250,6 +252,7 @@ pub fn parse_speeds(text: &str) -> Result<Vec<f64>, String> {
             return Err(format!("the range has {count:.3e} speeds, which is more than {MOST}: take a greater step"));
         }
         if from + step == from {
+            let [from, step] = [from, step].map(digits);
             return Err(format!("a step of {step} is nothing beside {from}: take a greater step"));
         }
         multiples(from, step, count as usize)

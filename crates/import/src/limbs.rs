@@ -9,6 +9,7 @@ use super::tree::{Body, Held, Skeleton, Tree};
 use super::words::{fits, is_leg, is_other_limb, nearest};
 use super::{Options, nearest_axis};
 use nalgebra::{Rotation3, Unit, UnitQuaternion, Vector3};
+use piaffe_model::digits::digits;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The share of the greatest depth that a leg must reach.
@@ -102,14 +103,20 @@ impl Search<'_> {
                     && joint.kind == JointKind::Revolute
                     && !(low..=high).contains(&angle)
                 {
-                    let what = format!("--lock {}={angle}: its stops are at {low} and {high} rad", joint.name);
-                    let remedy = format!("write --lock {}={}", joint.name, angle.clamp(low.min(high), high.max(low)));
+                    let [at, first, last] = [angle, low, high].map(digits);
+                    let what = format!("--lock {}={at}: its stops are at {first} and {last} rad", joint.name);
+                    let remedy =
+                        format!("write --lock {}={}", joint.name, digits(angle.clamp(low.min(high), high.max(low))));
                     faults.add(Kind::Option, Some(&joint.place), what, remedy);
                 }
                 let angle = angle.unwrap_or_else(|| at_rest(self.model, index));
                 self.held.insert(index, angle);
                 if joint.turns() {
-                    self.notes.push(format!("`{}` is held at {angle} rad (the file's angle), as you say", joint.name));
+                    self.notes.push(format!(
+                        "`{}` is held at {} rad (the file's angle), as you say",
+                        joint.name,
+                        digits(angle)
+                    ));
                 }
             }
         }

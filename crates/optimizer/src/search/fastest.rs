@@ -30,6 +30,11 @@ const FURTHER: f64 = 1.5;
 /// No robot is asked to go slower, in its unit of speed.
 const SLOWEST: f64 = 0.01;
 
+/// Whether no robot like this is asked to go so fast.
+pub fn is_too_fast(gait: &dyn Gait, speed: f64) -> bool {
+    speed > FASTEST * Units::new(gait.description()).speed()
+}
+
 /// What ends a gait where motions go on but optima do not.
 const BEYOND: &str = "finding an optimum among the motions that there are";
 
@@ -181,8 +186,11 @@ fn nearest_by(
 ) -> Option<f64> {
     let none = Settings { starts: Some(0), ..settings.clone() };
     let unit = Units::new(gait.description()).speed();
-    let (mut slower, mut faster) = (speed, speed);
-    for _ in 0..ATTEMPTS {
+    // From beyond all speeds that are asked for the way begins at the last of them, and leads to one side alone.
+    let beginning = speed.clamp(SLOWEST * unit, FASTEST * unit);
+    let attempts = if beginning == speed { ATTEMPTS } else { 2 * ATTEMPTS };
+    let (mut slower, mut faster) = (beginning, beginning);
+    for _ in 0..attempts {
         for (candidate, last) in [(slower / FURTHER, slower), (faster * FURTHER, faster)] {
             if !(SLOWEST * unit..=FASTEST * unit).contains(&candidate) {
                 continue;
@@ -198,7 +206,7 @@ fn nearest_by(
                     bad = middle;
                 }
             }
-            if let Some(answered) = answered(gait, criterion, [speed, good], settings) {
+            if let Some(answered) = answered(gait, criterion, [beginning, good], settings) {
                 return Some(answered);
             }
         }
