@@ -456,10 +456,14 @@ impl Search<'_> {
     fn other_kinds(&mut self, tree: &Tree, tips: &[Tip], faults: &mut Faults) {
         let mut fixed: BTreeMap<String, Vec<String>> = BTreeMap::new();
         for (index, joint) in self.model.joints.iter().enumerate() {
-            let what = match &joint.kind {
+            let mut remedy = format!("hold it still: --lock {}", joint.name);
+            let mut what = match &joint.kind {
                 JointKind::Fixed | JointKind::Revolute | JointKind::Continuous => continue,
                 JointKind::Free => "it moves freely".to_string(),
-                JointKind::Mimic => "it follows another joint (mimic)".to_string(),
+                JointKind::Mimic => {
+                    remedy += "; or take out what makes it follow, so that it has a motor of its own";
+                    "it follows another joint (mimic)".to_string()
+                }
                 JointKind::Other(kind) => format!("it is {kind}"),
             };
             let mut below = BTreeSet::new();
@@ -476,9 +480,11 @@ impl Search<'_> {
             });
             let carried = carried.count();
             if carried == 0 || carried == tips.len() || self.held.contains_key(&index) {
+                if joint.kind == JointKind::Mimic && !self.held.contains_key(&index) {
+                    what += ", and stays at 0 while that one moves (--lock JOINT=ANGLE holds it elsewhere)";
+                }
                 fixed.entry(what).or_default().push(format!("`{}`", joint.name));
             } else {
-                let remedy = format!("hold it still: --lock {}", joint.name);
                 let what = format!("{what}, and a leg hangs on it: legs have revolute joints");
                 faults.add(Kind::Joint, Some(&joint.place), what, remedy);
             }
