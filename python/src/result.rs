@@ -30,6 +30,8 @@ pub fn text(value: &impl Serialize) -> PyResult<String> {
 
 fn read(json: &str) -> Result<(Value, GaitResult), String> {
     let place = |why: serde_json::Error| format!("this is no result of piaffe: {why}");
+    // Some editors begin a text with a byte-order mark.
+    let json = json.trim_start_matches('\u{feff}');
     let value = serde_json::from_str(json).map_err(place)?;
     Ok((value, serde_json::from_str(json).map_err(place)?))
 }
