@@ -5,7 +5,6 @@ use super::peaks;
 use piaffe_model::digits::digits;
 use piaffe_model::motion::Criterion;
 use piaffe_model::{Description, Mode};
-use piaffe_optimizer::constraints::sharing::impacts_pitch;
 use piaffe_optimizer::result::{GaitResult, NotExamined, Status};
 use piaffe_optimizer::search::evidence::Effort;
 use piaffe_optimizer::sensitivity::Sensitivity;
@@ -55,11 +54,7 @@ fn at_real_legs(description: &Description, cost: f64, without: f64) -> String {
         return "nothing is imposed: where the platform does not roll, legs that move as one share equally".into();
     }
     let (more, without) = (100.0 * (cost / without - 1.0), decimal(without, 4));
-    let pitch = match impacts_pitch(description) {
-        true => "; part of it is that impacts may not pitch the platform at all, where the verdict allows for 1 %",
-        false => "",
-    };
-    format!("{more:+.3} % against {without} with limits at the virtual legs only{pitch}")
+    format!("{more:+.3} % against {without} with limits at the virtual legs only")
 }
 
 /// A saving that a slope may promise, %: what it says of larger ones is not true any more.
