@@ -52,6 +52,34 @@ fn what_cannot_be_imported_leaves_nothing_behind() {
     assert!(made.status.success(), "{}", words(&made));
 }
 
+/// A gait that builds may ask for what no robot can do: that is told with the numbers, of all gaits at once.
+#[test]
+fn limits_to_which_no_motion_keeps_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    piaffe(&["import", &case("00-control-ok.urdf"), "--out", "dog", "--untried"], folder.path());
+    let change = |gait: &str, from: &str, to: &str| {
+        let file = folder.path().join(format!("dog/gaits/{gait}.toml"));
+        let text = std::fs::read_to_string(&file).unwrap();
+        assert!(text.contains(from), "{text}");
+        std::fs::write(file, text.replacen(from, to, 1)).unwrap();
+    };
+    change("trot", "min_vertical_force = ", "min_vertical_force = 1000 # ");
+    change("bound", "min_vertical_force = ", "min_platform_height = 2\nmin_vertical_force = ");
+    let checked = piaffe(&["check", "dog"], folder.path());
+    let told = words(&checked);
+    assert_eq!(checked.status.code(), Some(1), "{told}");
+    for part in [
+        "It builds.",
+        "trot: no motion keeps to limits.min_vertical_force = 1000 N",
+        "117.7 N",
+        "bound: no motion keeps to limits.min_platform_height = 2 m",
+    ] {
+        assert!(told.contains(part), "{part}: {told}");
+    }
+    let optimized = piaffe(&["optimize", "trot", "--robot", "dog", "--speed", "0.5"], folder.path());
+    assert!(optimized.status.code() == Some(3) && words(&optimized).contains("= 1000 N"), "{}", words(&optimized));
+}
+
 /// A name that no module can have keeps nobody from the robot but a build.
 #[test]
 fn a_folder_may_be_called_as_it_likes() {

@@ -189,6 +189,18 @@ fn how_closely_an_optimum_is_looked_at_is_a_choice() {
     assert_eq!(piaffe(&["verify", file.to_str().unwrap()], "").status.code(), Some(4));
 }
 
+/// Whatever speed is typed: it is shown as it can be read, and where it is beyond all reason there is one that works.
+#[test]
+fn an_absurd_speed_is_said_in_a_few_characters() {
+    for speed in ["1e-300", "1000", "1e300"] {
+        let out = piaffe(&["optimize", "trot", "--speed", speed, "--starts", "2", "--examine", "none"], "");
+        let told = text(&out.stdout);
+        assert_eq!(out.status.code(), Some(3), "{told}");
+        assert!(told.contains(&format!("at {speed} m/s: ")) && !told.contains("00000000"), "{told}");
+        assert_eq!(told.contains("The nearest speed that works is 1.08"), speed != "1e-300", "{told}");
+    }
+}
+
 #[test]
 fn an_infeasible_speed_is_said_and_fails() {
     let out = piaffe(&["optimize", "trot", "--speed", "5", "--starts", "2", "--json", "-"], "");

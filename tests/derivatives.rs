@@ -5,9 +5,11 @@ mod rubbing;
 #[path = "gaits/walking.rs"]
 mod walking;
 
+use piaffe::Robot;
 use piaffe::altered::Altered;
 use piaffe::cycle::{Cycle, Still, elements, theta};
 use piaffe::gaits::GAITS;
+use piaffe::interpreter::Interpreted;
 use piaffe::model::Gait;
 use piaffe::motion::Criterion;
 use piaffe::search::guess::{Plan, walk};
@@ -147,6 +149,14 @@ fn gradients_agree_with_differences_for_every_gait_criterion_and_order() {
             check(&Altered::at_real_legs(&rubbing::dry(*gait)).unwrap(), criterion, 2);
         }
     }
+    let geared = geared();
+    Criterion::ALL.into_iter().for_each(|criterion| check(&Altered::at_real_legs(&geared).unwrap(), criterion, 0));
+}
+
+/// An amble whose impacts pitch the robot.
+fn geared() -> Interpreted {
+    let robot = Robot::read("model-spec").unwrap().with("actuators.haunch_motor.rotor_inertia", 2e-5).unwrap();
+    robot.gait("amble").unwrap()
 }
 
 /// What the power of a joint adds to the criterion in an element, where it keeps its sign there: all such elements of a motion add up to
@@ -233,7 +243,9 @@ fn the_hessian_of_the_lagrangian_agrees_with_differences_of_its_gradient() {
     let rub: Vec<_> = GAITS.iter().flat_map(|gait| [rubbing::smooth(*gait), rubbing::dry(*gait)]).collect();
     let all_rub: Vec<_> = rub.iter().filter(|gait| !gait.description().flies()).collect();
     let rub_at_real_legs: Vec<_> = all_rub.into_iter().map(|gait| Altered::at_real_legs(gait).unwrap()).collect();
-    let altered = at_real_legs.iter().chain(&rub).chain(&rub_at_real_legs);
+    let geared = geared();
+    let geared_at_real_legs = Altered::at_real_legs(&geared).unwrap();
+    let altered = at_real_legs.iter().chain(&rub).chain(&rub_at_real_legs).chain([&geared_at_real_legs]);
     let gaits = GAITS.iter().copied().chain(altered.map(|g| g as &dyn Gait));
     for (gait, held) in gaits.flat_map(|gait| [(gait, false), (gait, true)]) {
         for criterion in Criterion::ALL {

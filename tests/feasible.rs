@@ -161,3 +161,37 @@ fn a_sweep_has_no_holes_between_its_optima() {
         assert!(result.is_optimal(), "{:?} at {}: {}", result.criterion, result.speed, result.message);
     }
 }
+
+/// What no motion can do is said at once, with the numbers; what some motion does is never said to be impossible.
+#[test]
+fn limits_that_contradict_the_robot_need_no_search() {
+    let least = |name: &str, share: f64| altered(name, |d| d.limits.min_vertical_force = share * d.weight());
+    assert!(GAITS.iter().all(|gait| gait.description().contradictions().is_empty()));
+    assert!(least("trot", 0.999).description().contradictions().is_empty());
+    let heavy = least("trot", 1.001);
+    let [contradiction] = &heavy.description().contradictions()[..] else { panic!("one") };
+    assert_eq!((contradiction.limit, contradiction.most), ("limits.min_vertical_force", heavy.description().weight()));
+    let result = optimize(&heavy, Criterion::Torque, 0.6, &FEW);
+    assert_eq!((result.status, result.search.effort.starts), (Status::Infeasible, 0));
+    assert!(result.message.contains("= 136.0") && result.message.contains("135.9 N"), "{}", result.message);
+    assert_eq!(nearest_speed(&heavy, Criterion::Torque, 0.6, &FEW), None);
+    // Who flies pushes harder while it stands: as much as flights may last and stances must.
+    let run = least("running_trot", 1.3);
+    assert_eq!(optimize(&run, Criterion::Torque, 1.0, &FEW).status, Status::Optimal);
+    let longest = |d: &mut Description| d.phases.to_mut().iter_mut().for_each(|phase| phase.duration = [0.1, 0.2]);
+    let most =
+        |share: f64| altered("running_trot", |d| (longest(d), d.limits.min_vertical_force = share * d.weight()).1);
+    assert!(most(2.999).description().contradictions().is_empty());
+    assert_eq!(most(3.001).description().contradictions().len(), 1);
+    // Nothing is higher above a foot than stretched legs are long.
+    let reach = named("trot").description().leg_length();
+    for share in [1.01, 3.01] {
+        let limits = |d: &mut Description| {
+            d.limits.min_platform_height = share * reach;
+            d.limits.body_clearance = share * reach;
+            d.limits.swing_clearance = share * reach;
+        };
+        let known = altered("trot", limits).description().contradictions();
+        assert_eq!(known.len(), if share > 2.0 { 3 } else { 2 }, "{known:?}");
+    }
+}

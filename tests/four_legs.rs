@@ -8,13 +8,21 @@ mod python;
 mod walking;
 
 use piaffe::altered::Altered;
+use piaffe::constraints::sharing::BALANCED;
 use piaffe::cycle::{Cycle, theta};
+use piaffe::examine::Examination;
 use piaffe::export::{controller::controller, mjcf::mjcf, table::real_joints, urdf::urdf};
 use piaffe::four_legs::{Component, Equations, Instant, Legs, Lift, Limits, PLATFORM, RealLegs, Shares, Verdict, best};
 use piaffe::gaits::GAITS;
 use piaffe::model::Gait;
-use piaffe::motion::{Criterion, Motion};
+use piaffe::motion::{Course, Criterion, Motion};
+use piaffe::result::Status;
+use piaffe::search::multi_start::Settings;
+use piaffe::sqp::Control;
+use piaffe::units::Units;
 use piaffe::walk::{Moment, Walk};
+use piaffe::{Robot, Task};
+use piaffe_codegen::{Changes, Load};
 use program::{optimum, optimum_at, piaffe};
 use python::{ask, python};
 use serde_json::{Value, json};
@@ -230,6 +238,48 @@ fn an_impact_asks_for_no_moment_that_the_feet_cannot_give() {
         assert!(pitch.abs() < 1e-12 * d.total_mass(), "{pitch}");
         // The couple lies across the legs' plane.
         assert!((couple_y * q[n - 1].cos() + couple_z * q[n - 1].sin()).abs() < 1e-12, "{couple_y} {couple_z}");
+    }
+}
+
+/// Where hips are off the mass centre or rotors turn, impacts pitch the robot. Limits at each real leg let them, as far as the verdict does.
+#[test]
+fn an_impact_may_pitch_the_robot_as_little_as_the_verdict_lets_pass() {
+    let shipped = Robot::read("model-spec").unwrap();
+    let load = Changes { loads: vec![Load { mass: 1.0, at: [0.0, 0.06, 0.0] }], ..Changes::default() };
+    let loaded = shipped.changed(&load).unwrap();
+    let geared = shipped.with("actuators.haunch_motor.rotor_inertia", 2e-5).unwrap();
+    let heavily_geared = shipped.with("actuators.haunch_motor.rotor_inertia", 5e-5).unwrap();
+    for (robot, pitches_freely) in [(loaded, false), (geared, false), (heavily_geared, true)] {
+        let amble = robot.gait("amble").unwrap();
+        let (d, unit) = (amble.description(), Units::new(amble.description()).angular_momentum());
+        let pitched = |motion: &Motion| {
+            let end = |(k, h): (usize, &Course)| {
+                let [q, qd] = [d.complete(&h.q_final, h.beta_final), d.complete(&h.qd_final, h.betad_final)];
+                let mut out = vec![f64::NAN; d.shapes.touchdown.len];
+                amble.touchdown(d.transition(k).lands().unwrap(), &q, &qd, &mut out);
+                (d.shapes.touchdown.pitch.value(&out) / unit).abs()
+            };
+            motion.phases.iter().enumerate().map(end).fold(0.0, f64::max)
+        };
+        let found = |real_legs: bool| {
+            let settings = Settings { starts: Some(4), examination: Examination::None, ..Settings::default() };
+            let result = Task::new(&amble).speed(0.5).answer(real_legs, &settings, &|_| Control::Continue).unwrap();
+            assert_eq!(result.status, Status::Optimal, "{}", result.message);
+            let motion = result.motion().unwrap();
+            (pitched(&motion), RealLegs::new(&amble, &motion).unwrap())
+        };
+        for real_legs in [false, true] {
+            let (pitched, legs) = found(real_legs);
+            let lacking = legs.best_shares.impact;
+            assert_eq!(lacking.of, Component::PitchingMoment);
+            assert!((pitched / lacking.share - 1.0).abs() < 1e-3 && pitched > 1e-4, "{pitched} {lacking:?}");
+            if real_legs {
+                assert_eq!(legs.verdict(), Verdict::UnequalShares);
+                assert!(!pitches_freely || (0.0..2e-6).contains(&(BALANCED - pitched)), "{pitched}");
+            } else {
+                assert_eq!(pitched > BALANCED, pitches_freely, "{pitched}");
+            }
+        }
     }
 }
 

@@ -605,3 +605,48 @@ fn joints_that_are_held_are_named() {
     let (plain, _) = imported("00-control-ok.urdf");
     assert!(!plain.notes.iter().any(|note| note.contains("hold still")), "{}", plain.notes.join("\n"));
 }
+
+/// Motors that differ keep legs from moving as one: it is said what that costs, and how to have them alike.
+#[test]
+fn what_follows_from_motors_that_differ_is_said() {
+    let hind = |line: &str| match line.contains("\"hl_hip\"") || line.contains("\"hr_hip\"") {
+        true => line.replace("effort=\"30\" velocity=\"20\"", "effort=\"40\" velocity=\"21\"") + "\n",
+        false => line.to_string() + "\n",
+    };
+    let text: String = text("00-control-ok.urdf").lines().map(hind).collect();
+    let made = import(&text, &Options::default()).unwrap();
+    assert!(
+        says(&made, "`fl_hip` and `hl_hip` have different motors: 30 and 40 N·m, 20 and 21 rad/s"),
+        "{:?}",
+        made.notes
+    );
+    assert!(says(&made, "diagonal legs do not move as one, and there is no trot"), "{:?}", made.notes);
+    assert!(!gaits(&made).contains(&"trot.toml"));
+    let alike = given(&[("--effort", "*_hip=35"), ("--velocity", "*_hip=20")]);
+    let made = import(&text, &alike).unwrap();
+    assert!(gaits(&made).contains(&"trot.toml") && !made.notes.iter().any(|note| note.contains("legs differ")));
+}
+
+/// A joint that follows another one does not move: it is said where it stays, or what to do where a leg hangs on it.
+#[test]
+fn what_follows_from_joints_that_mimic_is_said() {
+    let plain = text("00-control-ok.urdf");
+    let joint = |name: &str| {
+        format!(
+            "<joint name=\"{name}\" type=\"revolute\"><parent link=\"base\"/><child link=\"flag\"/><axis xyz=\"0 1 0\"/><mimic joint=\"fl_hip\"/></joint>"
+        )
+    };
+    let flag = format!("<link name=\"flag\"/>{}</robot>", joint("pole"));
+    let made = import(&plain.replace("</robot>", &flag), &Options::default()).unwrap();
+    assert!(
+        says(&made, "(mimic), and stays at 0 while that one moves (--lock JOINT=ANGLE holds it elsewhere): `pole`"),
+        "{:?}",
+        made.notes
+    );
+    let made = import(&plain.replace("</robot>", &flag), &given(&[("--lock", "pole=0.3")])).unwrap();
+    assert!(!made.notes.iter().any(|note| note.contains("stays at 0")), "{:?}", made.notes);
+    let knee = "<joint name=\"fl_knee\" type=\"revolute\">";
+    let follower = plain.replace(knee, &format!("{knee}<mimic joint=\"fl_hip\"/>"));
+    let faults = import(&follower, &Options::default()).unwrap_err().0;
+    assert!(faults.iter().any(|f| f.what.contains("mimic") && f.remedy.contains("a motor of its own")), "{faults:?}");
+}

@@ -122,7 +122,7 @@ impl Changes {
         let named =
             self.numbers.iter().filter(|(named, _)| spec::alternatives(named).iter().any(|named| named == name));
         let other = named.map(|(_, other)| other).find(|other| **other != value)?;
-        Some(format!("`{name}` cannot be both {value} and {other}: give it once"))
+        Some(format!("`{name}` cannot be both {value:?} and {other:?}: give it once"))
     }
 }
 

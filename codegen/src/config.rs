@@ -281,7 +281,7 @@ impl RobotFiles {
                 let value = if old(&name) * first < 0.0 { -value } else { value };
                 match wanted.get(&name) {
                     Some(other) if *other != value => {
-                        faults.push(format!("`{name}` cannot be both {other} and {value}: give it once"));
+                        faults.push(format!("`{name}` cannot be both {other:?} and {value:?}: give it once"));
                     }
                     _ => drop(wanted.insert(name, value)),
                 }

@@ -6,6 +6,7 @@ use crate::robot::Gait;
 use crate::work::{Stop, work};
 use piaffe::Task;
 use piaffe::examine::Examination;
+use piaffe::model::digits::digits;
 use piaffe::motion::Criterion;
 use piaffe::search::multi_start::Settings;
 use piaffe::sqp::Control;
@@ -21,8 +22,9 @@ pub fn criterion(name: &str) -> PyResult<Criterion> {
 /// A speed that can be asked for, m/s.
 pub fn speed(speed: f64) -> PyResult<f64> {
     let good = speed.is_finite() && speed > 0.0;
-    good.then_some(speed)
-        .ok_or_else(|| Error::new_err(format!("`speed` is {speed}: give a positive number of m/s, such as 0.6")))
+    good.then_some(speed).ok_or_else(|| {
+        Error::new_err(format!("`speed` is {}: give a positive number of m/s, such as 0.6", digits(speed)))
+    })
 }
 
 /// Starts of a search.

@@ -9,6 +9,7 @@ use piaffe::export::{mjcf as mujoco, npz as arrays, table};
 use piaffe::finite::not_finite;
 use piaffe::interpreter::Interpreted;
 use piaffe::model::Gait;
+use piaffe::model::digits::digits;
 use piaffe::motion::Motion;
 use piaffe::origin::is_of;
 use piaffe::report::{Extremes, Record, Report};
@@ -29,6 +30,8 @@ pub fn text(value: &impl Serialize) -> PyResult<String> {
 
 fn read(json: &str) -> Result<(Value, GaitResult), String> {
     let place = |why: serde_json::Error| format!("this is no result of piaffe: {why}");
+    // Some editors begin a text with a byte-order mark.
+    let json = json.trim_start_matches('\u{feff}');
     let value = serde_json::from_str(json).map_err(place)?;
     Ok((value, serde_json::from_str(json).map_err(place)?))
 }
@@ -47,8 +50,9 @@ fn gait_of(py: Python<'_>, result: &GaitResult) -> PyResult<Interpreted> {
 fn motion_of(result: &GaitResult) -> PyResult<Motion> {
     let conflicts: Vec<&str> = result.conflicts.iter().map(|conflict| conflict.constraint.as_str()).collect();
     let which = if conflicts.is_empty() { String::new() } else { format!(": {}", conflicts.join(", ")) };
-    let nearest =
-        result.nearest_speed.map_or(String::new(), |speed| format!("; the nearest speed that works is {speed} m/s"));
+    let nearest = result
+        .nearest_speed
+        .map_or(String::new(), |speed| format!("; the nearest speed that works is {} m/s", digits(speed)));
     let none = || NoOptimum::new_err(format!("{} has no motion ({}{which}{nearest})", result.name(), result.message));
     result.motion().ok_or_else(none)
 }
@@ -85,7 +89,8 @@ fn words(why: impl std::fmt::Display) -> String {
 /// A rate at which a walk can be sampled, Hz.
 fn rate(rate: f64) -> PyResult<f64> {
     let good = (1.0..=1e6).contains(&rate);
-    good.then_some(rate).ok_or_else(|| Error::new_err(format!("`rate` is {rate}: give 1 to 1000000 per second")))
+    good.then_some(rate)
+        .ok_or_else(|| Error::new_err(format!("`rate` is {}: give 1 to 1000000 per second", digits(rate))))
 }
 
 /// The walk as arrays, in numpy's format.

@@ -5,6 +5,7 @@ use crate::work::{Stop, apart, work};
 use piaffe::import::{Direction, FootPoint, Lock, Options, Setting, Stops, import};
 use piaffe::interpreter::{Interpreted, Unloadable};
 use piaffe::model::Gait as _;
+use piaffe::model::digits::digits;
 use piaffe_codegen::{Changes, Load, RobotFiles, SpecFile};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
@@ -31,7 +32,7 @@ fn named<'py, T: FromPyObjectOwned<'py>>(given: Option<&Bound<'py, PyAny>>) -> P
 fn settings(option: &str, given: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<Setting>> {
     let setting = |joint, value: f64| match value.is_finite() && value >= 0.0 {
         true => Ok(Setting { joint, value }),
-        false => Err(Error::new_err(format!("`{option}` is {value}: give a number that is not negative"))),
+        false => Err(Error::new_err(format!("`{option}` is {}: give a number that is not negative", digits(value)))),
     };
     match given.map(|given| (given, given.cast::<PyMapping>())) {
         None => Ok(Vec::new()),
@@ -131,14 +132,14 @@ impl Robot {
         tried: bool,
     ) -> PyResult<Robot> {
         if !(0.0..=0.5).contains(&alike) {
-            return Err(Error::new_err(format!("`alike` is {alike}, and must be between 0 and 0.5")));
+            return Err(Error::new_err(format!("`alike` is {}, and must be between 0 and 0.5", digits(alike))));
         }
         let ranges: Vec<(String, [f64; 2])> = range.map(entries).transpose()?.unwrap_or_default();
         if let Some((joint, [low, high])) =
             ranges.iter().find(|(_, [low, high])| low.is_nan() || high.is_nan() || low >= high)
         {
             return Err(Error::new_err(format!(
-                "`range` of {joint} is [{low}, {high}]: give the lower stop first, rad"
+                "`range` of {joint} is [{low:?}, {high:?}]: give the lower stop first, rad"
             )));
         }
         let options = Options {
@@ -230,7 +231,7 @@ impl Robot {
     /// The robot with a point mass (kg) on its platform, at a point in the frame of the legs' mounts (forward, up, right), m.
     fn loaded(&self, mass: f64, at: [f64; 3]) -> PyResult<Robot> {
         if !(mass.is_finite() && mass > 0.0 && at.iter().all(|x| x.is_finite())) {
-            return Err(Error::new_err(format!("a load of {mass} kg at {at:?}: give a positive mass and a point")));
+            return Err(Error::new_err(format!("a load of {mass:?} kg at {at:?}: give a positive mass and a point")));
         }
         let changes = Changes { loads: vec![Load { mass, at }], ..Changes::default() };
         Ok(Robot { robot: self.robot.changed(&changes).map_err(unloadable)?, notes: self.notes.clone() })

@@ -29,6 +29,9 @@ pub(super) struct At<T> {
     pub span: Span,
 }
 
+/// Some editors begin a text with it.
+const BYTE_ORDER_MARK: char = '\u{feff}';
+
 /// A specification file: the name that messages show, and its contents. Cheap to clone.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Source {
@@ -38,7 +41,7 @@ pub struct Source {
 
 impl Source {
     pub fn new(path: &str, text: &str) -> Self {
-        Self { path: path.into(), text: text.into() }
+        Self { path: path.into(), text: text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text).into() }
     }
 
     /// The path as it shall be shown.
@@ -46,6 +49,7 @@ impl Source {
         &self.path
     }
 
+    /// Without a byte-order mark: places count from behind it.
     pub fn text(&self) -> &str {
         &self.text
     }

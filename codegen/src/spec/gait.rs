@@ -24,8 +24,9 @@ use super::view::View;
 /// All mistakes that were found, at least one, in the order of the file. Their second labels may point into
 /// the robot's file.
 pub fn parse_gait(path: &str, text: &str, robot: &RobotFile) -> Result<Gait, Vec<Diagnostic>> {
-    let mut sink = Sink::new(Source::new(path, text));
-    let gait = read(path, text, Some(robot), &mut sink);
+    let source = Source::new(path, text);
+    let mut sink = Sink::new(source.clone());
+    let gait = read(path, source.text(), Some(robot), &mut sink);
     match gait {
         Some(gait) if sink.is_empty() => Ok(gait),
         _ => Err(sink.into_sorted()),
@@ -34,8 +35,9 @@ pub fn parse_gait(path: &str, text: &str, robot: &RobotFile) -> Result<Gait, Vec
 
 /// What is wrong with a gait's file whatever its robot is.
 pub fn gait_mistakes(path: &str, text: &str) -> Vec<Diagnostic> {
-    let mut sink = Sink::new(Source::new(path, text));
-    let _ = read(path, text, None, &mut sink);
+    let source = Source::new(path, text);
+    let mut sink = Sink::new(source.clone());
+    let _ = read(path, source.text(), None, &mut sink);
     sink.into_sorted()
 }
 

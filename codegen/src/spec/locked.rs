@@ -121,7 +121,7 @@ pub(super) fn with_locked(angles: &[(At<String>, f64)], robot: &RobotFile, sink:
         let [low, high] = joint.range;
         if !(low..=high).contains(angle) {
             let title =
-                format!("joint `{}` cannot be locked at {angle}: its stops are at {low} and {high}", name.value);
+                format!("joint `{}` cannot be locked at {angle:?}: its stops are at {low:?} and {high:?}", name.value);
             let help =
                 format!("write {} = {:?} or another angle of its range, rad", name.value, angle.clamp(low, high));
             report(name, Code::CannotLock, title, "beyond its stops", help);

@@ -8,6 +8,9 @@ use super::diagnostic::{At, Sink, Source, Span};
 use super::syntax;
 use super::view::View;
 
+/// What stands for all gaits of a robot where gaits are named.
+pub const ALL: &str = "all";
+
 const RULE: &str = "letters a to z, digits and _, a letter first, 100 at most";
 
 /// Most characters of a name: it becomes part of the names of files.
@@ -80,13 +83,15 @@ pub(super) fn of_gait(path: &str, root: &View<'_>, sink: &mut Sink) -> Option<St
     };
     let (title, label) = if !is_usable(&name.value) {
         (format!("\"{}\" cannot be a gait's name", shortened(&name.value)), RULE.to_string())
+    } else if name.value == ALL {
+        (format!("a gait cannot be called \"{ALL}\": the word stands for all gaits"), "could not be asked for".into())
     } else if let Some(why) = unusable_in_rust(&name.value) {
         (format!("a gait cannot be called \"{}\": {why}", name.value), "names a module and a type".to_string())
     } else {
         return Some(name.value);
     };
     let usable = usable(&name.value);
-    let gait = if unusable_in_rust(&usable).is_some() { "_gait" } else { "" };
+    let gait = if usable == ALL || unusable_in_rust(&usable).is_some() { "_gait" } else { "" };
     sink.report(Code::BadName, title, &name.span, label, format!("write name = \"{usable}{gait}\""));
     None
 }

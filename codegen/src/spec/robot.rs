@@ -52,7 +52,7 @@ impl RobotFile {
 pub fn parse_robot(path: &str, text: &str) -> Result<RobotFile, Vec<Diagnostic>> {
     let source = Source::new(path, text);
     let mut sink = Sink::new(source.clone());
-    let read = read(text, &mut sink);
+    let read = read(source.text(), &mut sink);
     match read {
         Some((robot, places, axes)) if sink.is_empty() => Ok(RobotFile { robot, source, places, axes }),
         _ => Err(sink.into_sorted()),

@@ -163,6 +163,19 @@ fn what_may_be_left_out() {
 
 /// A mass centre as a vector is the same as a distance along the link, which points along -y.
 #[test]
+fn a_byte_order_mark_is_no_part_of_a_text() {
+    let marked = |path: &str| format!("\u{feff}{}", read(path));
+    let text = marked("robot.toml");
+    let robot = parse_robot("robot.toml", &text).unwrap_or_else(|found| panic!("{}", rendered(found)));
+    assert_eq!(robot.robot, shipped_robot().robot);
+    assert!(parse_gait("trot.toml", &marked("gaits/trot.toml"), &robot).is_ok());
+    let heavier = set(&text, "links.thigh.mass", 3.5).unwrap();
+    assert_eq!(number(&heavier, "links.thigh.mass"), Some(3.5));
+    assert!(parse_robot("robot.toml", &heavier).is_ok());
+    assert!(parse_robot("robot.toml", &super::load(&text, 1.0, [0.0; 3]).unwrap()).is_ok());
+}
+
+#[test]
 fn two_ways_to_write_a_mass_centre() {
     let text = read("robot.toml").replace("com = 0.139 ", "com = [0.0, -0.139, 0.0] ");
     assert_ne!(text, read("robot.toml"));

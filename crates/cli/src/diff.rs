@@ -2,6 +2,7 @@
 
 use super::digits::decimal;
 use super::{document, input, output};
+use piaffe_model::digits::digits;
 use piaffe_optimizer::result::GaitResult;
 use piaffe_study::difference::{Difference, Pair, Prediction};
 use std::io::{self, Write};
@@ -26,7 +27,14 @@ pub fn run(a: &Path, b: &Path, json: Option<&str>) -> anyhow::Result<bool> {
 fn tell(names: &Pair<String>, results: &Pair<GaitResult>, d: &Difference) -> io::Result<()> {
     let mut out = output::person();
     for (letter, name, r) in [("A", &names.a, &results.a), ("B", &names.b, &results.b)] {
-        write!(out, "{letter}  {name}: {} of {}, least {} at {} m/s: ", r.gait, r.robot, r.criterion.name(), r.speed)?;
+        write!(
+            out,
+            "{letter}  {name}: {} of {}, least {} at {} m/s: ",
+            r.gait,
+            r.robot,
+            r.criterion.name(),
+            digits(r.speed)
+        )?;
         match r.cost {
             Some(cost) => writeln!(out, "{} {}", decimal(cost, 4), r.criterion.unit())?,
             None => writeln!(out, "no optimum ({})", r.message)?,

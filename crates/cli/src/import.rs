@@ -1,6 +1,7 @@
 //! `piaffe import`: a URDF or MJCF becomes a folder with a specification that builds.
 
-use super::{built, input, optimize, output, whole};
+use super::progress::{Counted, Progress};
+use super::{built, input, output, whole};
 use anyhow::{Context, bail};
 use piaffe_codegen::{RobotFiles, SpecFile, check};
 use piaffe_import::{Direction, FootPoint, Found, Import, Lock, Options, Setting, Stops, import};
@@ -124,7 +125,7 @@ fn to_begin_with(found: &[Found]) -> Option<(&str, f64)> {
 
 /// With the gaits that the robot can do.
 fn tried(made: Import) -> Import {
-    let bar = optimize::progress(None);
+    let bar = Progress::new(Counted::Starts(None));
     let made = made.tried(&|gait| {
         bar.set_message(format!("trying {gait}"));
         true

@@ -5,9 +5,9 @@
 //! it serves again.
 
 use super::output::{self, note};
+use super::progress::Progress;
 use super::{input, whole};
 use anyhow::{Context, bail};
-use indicatif::ProgressBar;
 use piaffe_model::motion::Criterion;
 use piaffe_model::{Gait, hash};
 use piaffe_optimizer::result::{GaitResult, file_name};
@@ -53,7 +53,7 @@ const JOURNAL: &str = "journal.jsonl";
 /// A folder that a sweep or a study writes to, and knows from earlier runs.
 pub struct Folder {
     path: PathBuf,
-    pub bar: ProgressBar,
+    pub bar: Progress,
     state: Mutex<State>,
 }
 
@@ -68,7 +68,7 @@ impl Folder {
     ///
     /// # Errors
     /// If it cannot be written to, or another run is doing so.
-    pub fn open(path: &Path, bar: ProgressBar) -> anyhow::Result<Folder> {
+    pub fn open(path: &Path, bar: Progress) -> anyhow::Result<Folder> {
         std::fs::create_dir_all(path).with_context(|| format!("cannot create {}", input::name(path)))?;
         let name = path.join(JOURNAL);
         let cannot = || format!("cannot use {}", input::name(&name));

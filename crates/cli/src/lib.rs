@@ -22,6 +22,7 @@ mod model;
 mod optimize;
 mod output;
 mod peaks;
+mod progress;
 mod report;
 mod robots;
 mod study;

@@ -2,7 +2,7 @@
 //! 1 m/s.
 
 use super::digits::decimal;
-use super::optimize::progress;
+use super::progress::{Counted, Progress};
 use super::{output, report, robots};
 use piaffe_model::Gait;
 use piaffe_model::motion::Criterion;
@@ -120,7 +120,7 @@ impl Table {
             "cycle",
             "KKT",
         );
-        let bar = progress(self.settings.starts);
+        let bar = Progress::new(Counted::Starts(self.settings.starts));
         let searches = self.gaits.len() * Criterion::ALL.len();
         let first = records.len();
         for criterion in Criterion::ALL {

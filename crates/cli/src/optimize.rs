@@ -1,7 +1,7 @@
 //! `piaffe optimize`: one gait, one criterion, one speed.
 
+use super::progress::{Counted, Progress};
 use super::{output, robots, summary};
-use indicatif::{ProgressBar, ProgressStyle};
 use piaffe_model::Gait;
 use piaffe_optimizer::cycle::theta;
 use piaffe_optimizer::result::GaitResult;
@@ -13,7 +13,7 @@ use piaffe_sqp::Control;
 
 pub fn run(task: Task, real_legs: bool, settings: &Settings, json: Option<&str>) -> anyhow::Result<bool> {
     output::check(json)?;
-    let bar = progress(settings.starts);
+    let bar = Progress::new(Counted::Starts(settings.starts));
     let watch = |event| {
         match event {
             Event::Iterate => {}
@@ -57,16 +57,4 @@ fn without_flights(gait: &dyn Gait, result: &GaitResult, asked: &Settings) -> Op
     let settings = Settings { starts: Some(STARTS_BESIDE), examination: asked.examination, ..Settings::default() };
     let task = Task { gait: walk, criterion: result.criterion, speed: result.speed };
     Some(task.search(&settings, &[theta(&motion)], &|_| {}))
-}
-
-/// Counts starts on standard error, with a bar if it is known how many there will be; hidden where that is no terminal.
-pub fn progress(starts: Option<usize>) -> ProgressBar {
-    let bar = match starts {
-        _ if output::is_quiet() => ProgressBar::hidden(),
-        Some(starts) => ProgressBar::new(starts as u64),
-        None => ProgressBar::no_length(),
-    };
-    let template =
-        if starts.is_some() { "{msg} {bar:30} {pos}/{len} starts {elapsed}" } else { "{msg} {pos} starts {elapsed}" };
-    bar.with_style(ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar()))
 }

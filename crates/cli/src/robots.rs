@@ -33,7 +33,7 @@ enum Origin {
 }
 
 /// Instead of the names of gaits: all of them.
-pub const ALL: &str = "all";
+pub use piaffe_codegen::spec::name::ALL;
 
 /// Of this run; chosen once, when it starts.
 static CHOICES: OnceLock<Vec<Choice>> = OnceLock::new();

@@ -2,12 +2,13 @@
 
 use super::digits::decimal;
 use super::journal::Folder;
+use super::progress::{Counted, Progress};
 use super::robots::Wanted;
 use super::{criteria, gait_names_or_all, input, output, report, robots, sweep, whole};
 use anyhow::{Context, bail};
 use clap::builder::PossibleValuesParser;
-use indicatif::{ProgressBar, ProgressStyle};
 use piaffe_codegen::Changes;
+use piaffe_model::digits::digits;
 use piaffe_optimizer::search::journal::Journal;
 use piaffe_report::space::{Space, Spot};
 use piaffe_report::{Extremes, Record, Report};
@@ -87,7 +88,7 @@ pub fn run(arguments: Arguments, changes: &Changes) -> anyhow::Result<bool> {
     let study = asked(arguments, changes)?;
     let asked = Asked { shard, question: Question::from(&study) };
     let points = shard.points(&study);
-    let folder = Folder::open(&path, progress(points.len()))?;
+    let folder = Folder::open(&path, Progress::new(Counted::Rows(points.len())).of("rows"))?;
     whole::check(&path.join(TABLE))?;
     let own = std::fs::read_to_string(path.join(ASKED)).ok();
     if let Some(earlier) = own.and_then(|text| serde_json::from_str::<Asked>(&text).ok())
@@ -236,14 +237,15 @@ fn tell(study: &Study, rows: &[Row]) -> std::io::Result<()> {
         let point = study.point(first);
         let same = || rows.iter().filter(|row| row.point % study.of_design() == first);
         let optimal = same().filter(|row| row.optimum.is_some()).count();
-        write!(out, "{}, least {} at {} m/s: ", point.gait, point.criterion.name(), point.speed)?;
+        write!(out, "{}, least {} at {} m/s: ", point.gait, point.criterion.name(), digits(point.speed))?;
         write!(out, "{optimal} of {} robots have an optimum", same().count())?;
         let best = same().filter_map(|row| Some((row, row.cost()?))).min_by(|a, b| a.1.total_cmp(&b.1));
         let Some((best, cost)) = best else {
             writeln!(out)?;
             continue;
         };
-        let with = study.designs.names().iter().zip(&best.numbers).map(|(name, number)| format!("{name}={number}"));
+        let with =
+            study.designs.names().iter().zip(&best.numbers).map(|(name, number)| format!("{name}={}", digits(*number)));
         let with: Vec<String> = with.collect();
         let with = if with.is_empty() { String::new() } else { format!(" with {}", with.join(" ")) };
         writeln!(out, "; best {} {}{with} (design {})", decimal(cost, 4), point.criterion.unit(), best.design)?;
@@ -254,10 +256,4 @@ fn tell(study: &Study, rows: &[Row]) -> std::io::Result<()> {
     let starts = study.search.starts.unwrap_or(piaffe_study::FEW);
     let from = if starts == 1 { "a start that knows".into() } else { format!("{starts} starts that know") };
     writeln!(out, "Every optimum is local: the best from the base robot's optima and {from} nothing of them.")
-}
-
-fn progress(rows: usize) -> ProgressBar {
-    let style = ProgressStyle::with_template("{msg} {bar:30} {pos}/{len} {elapsed}, about {eta} left");
-    let bar = if output::is_quiet() { ProgressBar::hidden() } else { ProgressBar::new(rows as u64) };
-    bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())).with_message("rows")
 }

@@ -2,9 +2,9 @@
 
 use super::digits::{at_least, decimal};
 use super::peaks;
+use piaffe_model::digits::digits;
 use piaffe_model::motion::Criterion;
 use piaffe_model::{Description, Mode};
-use piaffe_optimizer::constraints::sharing::impacts_pitch;
 use piaffe_optimizer::result::{GaitResult, NotExamined, Status};
 use piaffe_optimizer::search::evidence::Effort;
 use piaffe_optimizer::sensitivity::Sensitivity;
@@ -54,11 +54,7 @@ fn at_real_legs(description: &Description, cost: f64, without: f64) -> String {
         return "nothing is imposed: where the platform does not roll, legs that move as one share equally".into();
     }
     let (more, without) = (100.0 * (cost / without - 1.0), decimal(without, 4));
-    let pitch = match impacts_pitch(description) {
-        true => "; part of it is that impacts may not pitch the platform at all, where the verdict allows for 1 %",
-        false => "",
-    };
-    format!("{more:+.3} % against {without} with limits at the virtual legs only{pitch}")
+    format!("{more:+.3} % against {without} with limits at the virtual legs only")
 }
 
 /// A saving that a slope may promise, %: what it says of larger ones is not true any more.
@@ -94,7 +90,7 @@ pub fn shortest_flight(description: &Description, r: &GaitResult) -> Option<f64>
 /// Prints all there is to know about a result; `grounded` is the optimum of the gait without flights, where that was looked for.
 pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitResult>) -> std::io::Result<()> {
     let mut out = super::output::person();
-    writeln!(out, "{} of {}, least {} at {} m/s: {}", r.gait, r.robot, r.criterion.name(), r.speed, r.message)?;
+    writeln!(out, "{} of {}, least {} at {} m/s: {}", r.gait, r.robot, r.criterion.name(), digits(r.speed), r.message)?;
     if !r.conflicts.is_empty() {
         for c in &r.conflicts {
             let what = if c.violation > 1e-8 {
@@ -105,11 +101,12 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
             writeln!(out, "  {:<34} phase {}, t = {} s: {what}", c.constraint, c.phase, decimal(c.time, 3))?;
         }
     }
-    if r.status == Status::Infeasible {
-        match r.nearest_speed {
-            Some(v) => writeln!(out, "  The nearest speed that works is {v} m/s.")?,
-            None => writeln!(out, "  No speed was found that works: loosen one of these limits in the specification.")?,
+    match r.nearest_speed {
+        Some(v) => writeln!(out, "  The nearest speed that works is {} m/s.", digits(v))?,
+        None if r.status == Status::Infeasible && description.contradictions().is_empty() => {
+            writeln!(out, "  No speed was found that works: loosen one of these limits in the specification.")?;
         }
+        None => {}
     }
     if let (Some(cost), Some(costs)) = (r.cost, r.costs) {
         writeln!(out, "  cost            {} {}", decimal(cost, 4), r.criterion.unit())?;
@@ -135,7 +132,7 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
                 }
                 Some(GaitResult { gait, .. }) => format!("without it, no {gait} was found at this speed"),
             };
-            writeln!(out, "  flight          as short as is allowed ({least} s): {without}")?;
+            writeln!(out, "  flight          as short as is allowed ({} s): {without}", digits(least))?;
         }
         writeln!(out, "  step length     {} m", decimal(step, 4))?;
     }
@@ -196,7 +193,9 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
     for NotExamined { entry, reason } in &r.not_examined {
         writeln!(out, "  not examined    {} ({reason})", entry.replace('_', " "))?;
     }
-    writeln!(out, "  search          {}", confidence(r))?;
+    if description.contradictions().is_empty() {
+        writeln!(out, "  search          {}", confidence(r))?;
+    }
     if r.local_optima.len() > 1 {
         writeln!(out, "  local optima    (cost, phases, how many starts led there)")?;
         for o in &r.local_optima {

@@ -3,10 +3,11 @@
 use super::digits::decimal;
 use super::document::OVERVIEW;
 use super::journal::{Folder, effort};
+use super::progress::{Counted, Progress};
 use super::{output, report, speed};
-use indicatif::{ProgressBar, ProgressStyle};
-use piaffe_model::Gait;
+use piaffe_model::digits::digits;
 use piaffe_model::motion::Criterion;
+use piaffe_model::{Contradiction, Gait};
 use piaffe_optimizer::altered::Altered;
 use piaffe_optimizer::examine::Examination;
 use piaffe_optimizer::result::GaitResult;
@@ -39,7 +40,8 @@ pub fn run(
 ) -> anyhow::Result<bool> {
     let gaits = &if real_legs { at_real_legs(gaits)? } else { gaits.to_vec() };
     let visits = VISITS * (criteria.len() * speeds.len()) as u64;
-    let folder = Folder::open(path, progress(gaits.iter().map(|g| visits * effort(*g)).sum()))?;
+    let work = gaits.iter().map(|g| visits * effort(*g)).sum();
+    let folder = Folder::open(path, Progress::new(Counted::Work(work)).of("optima"))?;
     folder.compare(&gaits.iter().map(|g| *g as &dyn Gait).collect::<Vec<_>>(), criteria, speeds, settings);
     let of_gait = |gait: &&'static dyn Gait| atlas::Line {
         gait: *gait,
@@ -135,6 +137,11 @@ impl Line {
         self.results.par_iter_mut().flatten().for_each(|result| result.examine(gait, examination));
     }
 
+    /// What keeps the gait from any motion, at whatever speed.
+    fn contradictions(&self) -> Vec<Contradiction> {
+        self.gait.description().contradictions()
+    }
+
     fn records(&self) -> Vec<Record<'static>> {
         self.results.iter().flatten().map(|r| Record::issued(r.clone(), self.gait)).collect()
     }
@@ -149,21 +156,15 @@ fn ends(lines: &[Line]) -> Vec<Greatest> {
     lines.iter().filter_map(end).collect()
 }
 
-/// A bar in units of effort, with what is left; hidden where standard error is no terminal.
-fn progress(effort: u64) -> ProgressBar {
-    let style = ProgressStyle::with_template("{msg} {bar:30} {percent} % {elapsed}, about {eta} left");
-    let bar = if output::is_quiet() { ProgressBar::hidden() } else { ProgressBar::new(effort) };
-    bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())).with_message("optima")
-}
-
 fn tell(lines: &[Line], criteria: &[Criterion], speeds: &[f64], overview: &Overview) -> std::io::Result<()> {
     let mut out = output::person();
     let mut speeds: Vec<f64> = speeds.iter().copied().chain(overview.maximum_speeds.iter().map(|m| m.speed)).collect();
     speeds.sort_by(f64::total_cmp);
     speeds.dedup();
     out.write_all(table(lines, criteria, &speeds).as_bytes())?;
-    for hole in lines.iter().flat_map(|line| line.results.iter().flatten()).filter(|r| !r.is_optimal()) {
-        writeln!(out, "{}, {} at {} m/s: {}", hole.gait, hole.criterion.name(), hole.speed, hole.message)?;
+    let told = |line: &&Line| line.contradictions().is_empty();
+    for hole in lines.iter().filter(told).flat_map(|line| line.results.iter().flatten()).filter(|r| !r.is_optimal()) {
+        writeln!(out, "{}, {} at {} m/s: {}", hole.gait, hole.criterion.name(), digits(hole.speed), hole.message)?;
     }
     for line in lines {
         let name = line.gait.description().key;
@@ -176,7 +177,8 @@ fn tell(lines: &[Line], criteria: &[Criterion], speeds: &[f64], overview: &Overv
             None if line.results.iter().flatten().any(GaitResult::is_optimal) => {
                 writeln!(out, "{name}: no greatest speed found")?;
             }
-            None => writeln!(out, "{name}: no optimum at any of these speeds")?,
+            None if line.contradictions().is_empty() => writeln!(out, "{name}: no optimum at any of these speeds")?,
+            None => line.contradictions().iter().try_for_each(|why| writeln!(out, "{name}: {why}"))?,
         }
     }
     for comparison in &overview.comparisons {
@@ -242,6 +244,7 @@ pub fn parse_speeds(text: &str) -> Result<Vec<f64>, String> {
         let (from, to) = range.split_once("..").ok_or("a range reads FROM..TO:STEP, for example 0.1..1.6:0.1")?;
         let (from, to, step) = (number(from)?, number(to)?, number(step)?);
         if to < from {
+            let [to, from, step] = [to, from, step].map(digits);
             return Err(format!("the range ends below its beginning: write {to}..{from}:{step}"));
         }
         let count = steps(from, to, step);
@@ -249,6 +252,7 @@ pub fn parse_speeds(text: &str) -> Result<Vec<f64>, String> {
             return Err(format!("the range has {count:.3e} speeds, which is more than {MOST}: take a greater step"));
         }
         if from + step == from {
+            let [from, step] = [from, step].map(digits);
             return Err(format!("a step of {step} is nothing beside {from}: take a greater step"));
         }
         multiples(from, step, count as usize)

@@ -221,6 +221,7 @@ pub fn import(text: &str, options: &Options) -> Result<Import, ImportError> {
     };
     remarks(&model, &robot, &mut notes);
     notes.extend(arrangement.differences.iter().cloned());
+    notes.extend(arrangement.consequence());
     let text = write::robot(&robot, model.format, &notes);
     let file = parse_robot("robot.toml", &text).map_err(|mistakes| refused(&mistakes))?;
     let gaits = gaits::find(&robot, &arrangement, &file);
@@ -228,8 +229,7 @@ pub fn import(text: &str, options: &Options) -> Result<Import, ImportError> {
         let mut why = arrangement.differences.clone();
         why.extend(gaits.notes);
         let what = format!("no gait fits these legs: {}", why.join("; "));
-        let remedy =
-            "make legs alike that nearly are (--alike SHARE, 0.001 if it is not given), or hold joints (--lock)";
+        let remedy = format!("{}; or hold joints still (--lock)", symmetry::MEANT_ALIKE);
         faults.add(Kind::Legs, None, what, remedy);
         return Err(ImportError(faults.take()));
     }

@@ -9,6 +9,7 @@ use super::tree::{Body, Held, Skeleton, Tree};
 use super::words::{fits, is_leg, is_other_limb, nearest};
 use super::{Options, nearest_axis};
 use nalgebra::{Rotation3, Unit, UnitQuaternion, Vector3};
+use piaffe_model::digits::digits;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The share of the greatest depth that a leg must reach.
@@ -102,14 +103,20 @@ impl Search<'_> {
                     && joint.kind == JointKind::Revolute
                     && !(low..=high).contains(&angle)
                 {
-                    let what = format!("--lock {}={angle}: its stops are at {low} and {high} rad", joint.name);
-                    let remedy = format!("write --lock {}={}", joint.name, angle.clamp(low.min(high), high.max(low)));
+                    let [at, first, last] = [angle, low, high].map(digits);
+                    let what = format!("--lock {}={at}: its stops are at {first} and {last} rad", joint.name);
+                    let remedy =
+                        format!("write --lock {}={}", joint.name, digits(angle.clamp(low.min(high), high.max(low))));
                     faults.add(Kind::Option, Some(&joint.place), what, remedy);
                 }
                 let angle = angle.unwrap_or_else(|| at_rest(self.model, index));
                 self.held.insert(index, angle);
                 if joint.turns() {
-                    self.notes.push(format!("`{}` is held at {angle} rad (the file's angle), as you say", joint.name));
+                    self.notes.push(format!(
+                        "`{}` is held at {} rad (the file's angle), as you say",
+                        joint.name,
+                        digits(angle)
+                    ));
                 }
             }
         }
@@ -449,10 +456,14 @@ impl Search<'_> {
     fn other_kinds(&mut self, tree: &Tree, tips: &[Tip], faults: &mut Faults) {
         let mut fixed: BTreeMap<String, Vec<String>> = BTreeMap::new();
         for (index, joint) in self.model.joints.iter().enumerate() {
-            let what = match &joint.kind {
+            let mut remedy = format!("hold it still: --lock {}", joint.name);
+            let mut what = match &joint.kind {
                 JointKind::Fixed | JointKind::Revolute | JointKind::Continuous => continue,
                 JointKind::Free => "it moves freely".to_string(),
-                JointKind::Mimic => "it follows another joint (mimic)".to_string(),
+                JointKind::Mimic => {
+                    remedy += "; or take out what makes it follow, so that it has a motor of its own";
+                    "it follows another joint (mimic)".to_string()
+                }
                 JointKind::Other(kind) => format!("it is {kind}"),
             };
             let mut below = BTreeSet::new();
@@ -469,9 +480,11 @@ impl Search<'_> {
             });
             let carried = carried.count();
             if carried == 0 || carried == tips.len() || self.held.contains_key(&index) {
+                if joint.kind == JointKind::Mimic && !self.held.contains_key(&index) {
+                    what += ", and stays at 0 while that one moves (--lock JOINT=ANGLE holds it elsewhere)";
+                }
                 fixed.entry(what).or_default().push(format!("`{}`", joint.name));
             } else {
-                let remedy = format!("hold it still: --lock {}", joint.name);
                 let what = format!("{what}, and a leg hangs on it: legs have revolute joints");
                 faults.add(Kind::Joint, Some(&joint.place), what, remedy);
             }

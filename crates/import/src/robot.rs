@@ -7,6 +7,7 @@ use super::model::{Friction, Kind as JointKind, Model};
 use super::words::{Identifiers, fits, identifier};
 use super::{Options, ROUNDED, Rigid, Setting, nearest_axis};
 use nalgebra::{Matrix3, Vector3};
+use piaffe_model::digits::digits;
 use std::f64::consts::TAU;
 
 /// A robot in the specification's axes.
@@ -250,7 +251,7 @@ impl Making<'_> {
         };
         if low >= high {
             let remedy = format!("write the lower one first, in rad, or give them: --range {}=LOW,HIGH", joint.name);
-            let what = format!("its stops are at {low} and {high} rad");
+            let what = format!("its stops are at {} and {} rad", digits(low), digits(high));
             self.faults.add(Kind::Limit, Some(&joint.place), what, remedy);
             return None;
         }
@@ -260,7 +261,11 @@ impl Making<'_> {
         }
         if low < -2.0 * TAU || high > 2.0 * TAU {
             let [a, b] = [low, high].map(f64::to_radians);
-            let what = format!("its stops are at {low} and {high} rad, several turns away: these are degrees");
+            let what = format!(
+                "its stops are at {} and {} rad, several turns away: these are degrees",
+                digits(low),
+                digits(high)
+            );
             let remedy =
                 format!("write lower=\"{a:.4}\" upper=\"{b:.4}\", or give them: --range {}={a:.4},{b:.4}", joint.name);
             self.faults.add(Kind::Limit, Some(&joint.place), what, remedy);
@@ -271,7 +276,7 @@ impl Making<'_> {
         }
         let cut = [low.max(-WHOLE_TURN), high.min(WHOLE_TURN)];
         if cut[0] >= cut[1] {
-            let what = format!("its stops are at {low} and {high} rad, more than a turn from zero");
+            let what = format!("its stops are at {} and {} rad, more than a turn from zero", digits(low), digits(high));
             let remedy = format!("count from another zero, or give them: --range {}=LOW,HIGH", joint.name);
             self.faults.add(Kind::Limit, Some(&joint.place), what, remedy);
             return None;

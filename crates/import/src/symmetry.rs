@@ -7,6 +7,7 @@ use super::Rigid;
 use super::model::Friction;
 use super::robot::{Leg, Motor, PITCH, Robot};
 use nalgebra::Vector3;
+use piaffe_model::digits::few;
 
 /// Which legs belong together: pairs of a left and a right one, from fore to hind.
 pub struct Arrangement {
@@ -16,6 +17,22 @@ pub struct Arrangement {
     /// Why legs differ, a sentence each.
     pub differences: Vec<String>,
 }
+
+impl Arrangement {
+    /// What follows where legs are not alike, and what to do about it.
+    pub fn consequence(&self) -> Option<String> {
+        let follows = match self.pairs.len() {
+            1 => "each of the two steps is found for itself",
+            2 => "diagonal legs do not move as one, and there is no trot",
+            _ => "there is no tripod",
+        };
+        (!self.alike).then(|| format!("since legs differ, {follows}: {MEANT_ALIKE}"))
+    }
+}
+
+/// What to do about legs that should not differ.
+pub const MEANT_ALIKE: &str = "if they are meant to be alike, let more of a difference pass (--alike SHARE, 0.001 if it is not given), or give \
+                               joints the same motors and stops (--effort, --velocity, --gear, --range with JOINT=…)";
 
 /// Sorts the legs and makes alike those that differ by no more than the share `tolerance`.
 pub fn arrange(robot: &mut Robot, tolerance: f64, notes: &mut Vec<String>) -> Option<Arrangement> {
@@ -260,9 +277,18 @@ impl Likening {
             }
             let (m, n) = (&s.joint.motor, &t.joint.motor);
             let same = |p: Option<f64>, q: Option<f64>| p.zip(q).is_none_or(|(p, q)| close(p, q, p.abs().max(q.abs())));
-            let equal = close(m.effort, n.effort, m.effort) && close(m.velocity, n.velocity, m.velocity);
-            if !(equal && same(m.gear, n.gear)) {
-                return Err(format!("{names} have different motors"));
+            let both = |p: f64, q: f64, unit: &str| format!("{} and {}{unit}", few(p), few(q));
+            let differ = [
+                (!close(m.effort, n.effort, m.effort)).then(|| both(m.effort, n.effort, " N·m")),
+                (!close(m.velocity, n.velocity, m.velocity)).then(|| both(m.velocity, n.velocity, " rad/s")),
+                m.gear
+                    .zip(n.gear)
+                    .filter(|_| !same(m.gear, n.gear))
+                    .map(|(p, q)| "gears of ".to_string() + &both(p, q, "")),
+            ];
+            let differ: Vec<String> = differ.into_iter().flatten().collect();
+            if !differ.is_empty() {
+                return Err(format!("{names} have different motors: {}", differ.join(", ")));
             }
         }
         Ok(())

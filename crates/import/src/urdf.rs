@@ -4,6 +4,7 @@ use super::fault::{Faults, Kind, Place};
 use super::model::{Format, Friction, Joint, Kind as JointKind, Link, Mass, Model, Shape, Solid};
 use super::xml::{File, child, children, plain};
 use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
+use piaffe_model::digits::digits;
 use roxmltree::Node;
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
@@ -112,7 +113,7 @@ impl Reader<'_, '_, '_> {
         let [xx, yy, zz, xy, xz, yz] = entries.unwrap_or_default();
         let inertia = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
         if mass < 0.0 {
-            self.faults.add(Kind::Inertia, Some(&place), format!("its mass is {mass} kg"), "remove the sign");
+            self.faults.add(Kind::Inertia, Some(&place), format!("its mass is {} kg", digits(mass)), "remove the sign");
         }
         Some(Mass { mass, frame, inertia }).filter(|m| m.mass.is_finite() && m.inertia.iter().all(|x| x.is_finite()))
     }

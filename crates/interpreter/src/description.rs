@@ -9,6 +9,16 @@ use std::borrow::Cow;
 
 /// The description of a gait with the name `key`.
 pub fn description(m: &Mechanism, key: &str, derived: &Derived) -> Description {
+    Description {
+        lowest: kept(derived.lowest.clone()),
+        shapes: &kept(vec![shape::Shapes::named("", &|name| derived.shapes.block(name))])[0],
+        operations: derived.operations(),
+        ..underived(m, key)
+    }
+}
+
+/// The same without what has to be derived.
+pub fn underived(m: &Mechanism, key: &str) -> Description {
     let mut description = Description {
         key: text(key),
         gait: text(&m.gait),
@@ -31,10 +41,10 @@ pub fn description(m: &Mechanism, key: &str, derived: &Derived) -> Description {
         unactuated: m.unactuated,
         polynomial_order: m.polynomial_order,
         points: kept(points(m).iter().map(point).collect()),
-        lowest: kept(derived.lowest.clone()),
+        lowest: &[],
         limits: limits(&m.limits),
-        shapes: &kept(vec![shape::Shapes::named("", &|name| derived.shapes.block(name))])[0],
-        operations: derived.operations(),
+        shapes: &shape::Shapes::NONE,
+        operations: &[],
     };
     // As code has them: zero without a sign.
     description.for_each_number(&mut |number| *number += 0.0);

@@ -1,10 +1,11 @@
 //! A robot by its files: `robot.toml` and `gaits/*.toml`.
 
-use super::gait::{Interpreted, Kernels};
+use super::description::underived;
+use super::gait::{Interpreted, Kernels, mechanism};
 use super::tape::Unrunnable;
 use piaffe_codegen::spec;
 use piaffe_codegen::{Changes, RobotFiles, SpecFile, Specified, specified};
-use piaffe_model::{Description, Specification};
+use piaffe_model::{Contradiction, Description, Specification};
 use std::path::Path;
 
 /// A robot as its files describe it; nothing has been derived yet.
@@ -151,6 +152,16 @@ impl Robot {
         let (gait, specification) = (self.specified_gait(name)?, self.known_specification(name)?);
         Interpreted::new(&self.specified.robot, gait, specification, name)
             .map_err(|why| Unloadable::Gait { gait: name.into(), why })
+    }
+
+    /// The limits of a gait to which no motion can keep, without deriving it.
+    ///
+    /// # Errors
+    /// If there is none of this name, or the robot's numbers make some that are none.
+    pub fn contradictions(&self, name: &str) -> Result<Vec<Contradiction>, Unloadable> {
+        let mechanism = mechanism(&self.specified.robot, self.specified_gait(name)?)
+            .map_err(|why| Unloadable::Gait { gait: name.into(), why })?;
+        Ok(underived(&mechanism, name).contradictions())
     }
 
     /// A gait that was derived with others, with its own description and kernels.

@@ -4,6 +4,7 @@
 //! the robot with the given values, and can tell how what it computes depends on them.
 
 use super::{Body, Description, Gait, Leg, Mode, Rotation, Then};
+use crate::digits::digits;
 use crate::units::Units;
 use nalgebra::Matrix3;
 
@@ -45,7 +46,7 @@ pub enum Unfit {
     Count { found: usize, expected: usize },
     #[error("the family has no parameter `{name}`; it has {known}")]
     Unknown { name: String, known: String },
-    #[error("{name} = {value} {unit}: it must be {must}")]
+    #[error("{name} = {} {unit}: it must be {must}", digits(*.value))]
     Value { name: &'static str, value: f64, unit: &'static str, must: &'static str },
     #[error(
         "the inertia of {body} is one that no rigid body can have: no moment about any axis exceeds the sum of the other \

@@ -7,6 +7,8 @@
 
 #![forbid(unsafe_code)]
 
+mod contradiction;
+pub mod digits;
 pub mod family;
 pub mod limit;
 pub mod motion;
@@ -17,6 +19,7 @@ pub mod units;
 pub mod whole;
 
 use crate::motion::Costs;
+pub use contradiction::Contradiction;
 pub use limit::Limit;
 pub use numbers::Lever;
 pub use specification::Specification;
@@ -434,11 +437,22 @@ impl Description {
 
     /// Length of a straight leg, m.
     pub fn leg_length(&self) -> f64 {
-        let leg = &self.legs[0];
-        let norm = |v: &[f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        self.reach(0)
+    }
+
+    /// Length of this leg when it is straight, m.
+    fn reach(&self, leg: usize) -> f64 {
+        let leg = &self.legs[leg];
         let links = self.bodies.iter().filter(|b| b.parent.is_some_and(|p| p != 0));
         let inner = links.filter(|b| b.coordinate.is_some_and(|c| (leg.first_joint..leg.end_joint).contains(&c)));
         inner.map(|b| norm(&b.offset)).sum::<f64>() + norm(&leg.foot)
+    }
+
+    /// Hip of a virtual leg from the platform's mass centre, in its axes, m.
+    pub fn hip(&self, leg: usize) -> [f64; 3] {
+        let first = self.legs[leg].first_joint;
+        let body = self.bodies.iter().find(|b| b.parent == Some(0) && b.coordinate == Some(first));
+        body.map_or([0.0; 3], |b| b.offset)
     }
 
     /// Whether the joint connects a leg to the platform.
@@ -459,6 +473,10 @@ impl Description {
         let mirrored = self.rotation == Rotation::Roll && self.bodies.iter().any(|b| turns(&b));
         (from, if mirrored { -1.0 } else { 1.0 })
     }
+}
+
+fn norm(v: &[f64; 3]) -> f64 {
+    v.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 /// FNV-1a: the same on every machine and with every compiler.

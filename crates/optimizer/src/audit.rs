@@ -5,6 +5,7 @@
 
 use crate::origin::{gait_of, under_its_limits};
 use crate::result::GaitResult;
+use piaffe_model::digits::digits;
 use piaffe_model::motion::Motion;
 use piaffe_model::{Description, Gait, limit};
 use serde::{Deserialize, Serialize};
@@ -189,7 +190,7 @@ fn contradicted(entry: &str, result: &GaitResult, cost: Option<f64>) -> Option<S
     match (entry, cost) {
         ("local_optima", _) if result.variables.is_empty() => Some("there is no motion, and these were found".into()),
         ("local_optima", Some(cost)) if found.iter().all(|optimum| !near(optimum.cost, cost)) => {
-            Some(format!("the optimum, which costs {cost}, is none of those that were found"))
+            Some(format!("the optimum, which costs {}, is none of those that were found", digits(cost)))
         }
         ("search", _) if effort.successes > effort.starts => {
             Some(format!("{} of {} starts led to an optimum", effort.successes, effort.starts))
@@ -222,7 +223,7 @@ pub fn derived(result: &GaitResult, gaits: &[&dyn Gait]) -> Result<GaitResult, R
     let gait = gait_of(result, gaits).map_err(|foreign| Refusal::Because(Verdict::NotChecked, foreign.to_string()))?;
     let refuted = |reason: String| Refusal::Because(Verdict::NotConfirmed, reason);
     if !(result.speed.is_finite() && result.speed > 0.0) {
-        return Err(refuted(format!("{} m/s is no speed to walk at", result.speed)));
+        return Err(refuted(format!("{} m/s is no speed to walk at", digits(result.speed))));
     }
     if result.variables.is_empty() {
         let Description { robot, polynomial_order, .. } = *gait.description();

@@ -2,21 +2,29 @@
 
 use crate::altered::Altered;
 use crate::result::{GaitResult, Status};
-use crate::search::fastest::nearest_speed;
+use crate::search::fastest::{is_too_fast, nearest_speed};
 use crate::search::local::Task;
 use crate::search::multi_start::{Expected, Settings, search_watched};
 use crate::search::watch::{Event, Watch, ended};
 use piaffe_model::Gait;
+use piaffe_model::digits::digits;
 use piaffe_model::motion::Criterion;
 use piaffe_sqp::Control;
 use std::time::Instant;
 
 /// A question that has no answer.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("a speed of {speed} m/s cannot be asked for: it must be a positive number")]
+#[error("a speed of {} m/s cannot be asked for: it must be a positive number", digits(*.speed))]
 pub struct Unaskable {
     /// m/s.
     pub speed: f64,
+}
+
+impl Unaskable {
+    /// If the speed, m/s, is none that can be asked for.
+    pub fn of(speed: f64) -> Option<Unaskable> {
+        (!(speed.is_finite() && speed > 0.0)).then_some(Unaskable { speed })
+    }
 }
 
 impl<'a> Task<'a> {
@@ -49,11 +57,10 @@ impl<'a> Task<'a> {
     /// # Errors
     /// If the speed is no positive number.
     pub fn optimize_with(&self, settings: &Settings) -> Result<GaitResult, Unaskable> {
-        let speed = self.speed;
-        if !(speed.is_finite() && speed > 0.0) {
-            return Err(Unaskable { speed });
+        match Unaskable::of(self.speed) {
+            Some(why) => Err(why),
+            None => Ok(self.search(settings, &[], &|_| {})),
         }
-        Ok(self.search(settings, &[], &|_| {}))
     }
 
     /// The same from these motions' variables Θ too, at a speed that can be asked for. `done(k)` is told when start `k` has ended.
@@ -77,7 +84,10 @@ impl<'a> Task<'a> {
             watch(Event::AtRealLegs);
             result = GaitResult { virtual_cost, ..task.watched(settings, &from, watch) };
         }
-        if result.status == Status::Infeasible && watch(Event::NearestSpeed) == Control::Continue {
+        // At a speed that is beyond all reason searches may not even see what is in the way.
+        let lost = !result.is_optimal() && is_too_fast(task.gait, self.speed);
+        let none = lost || result.status == Status::Infeasible;
+        if none && watch(Event::NearestSpeed) == Control::Continue {
             result.nearest_speed = nearest_speed(task.gait, self.criterion, self.speed, settings);
         }
         result.examine(task.gait, settings.examination);

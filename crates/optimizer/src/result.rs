@@ -10,6 +10,7 @@ use crate::search::multi_start::{Found, Settings};
 use crate::sensitivity::Sensitivities;
 use crate::stability::Stability;
 use crate::verdict::{self, Verdict};
+use piaffe_model::digits::digits;
 use piaffe_model::motion::{Costs, Course, Criterion, Motion};
 use piaffe_model::{Gait, Specification};
 use piaffe_sqp as sqp;
@@ -17,7 +18,7 @@ use piaffe_verify::certificate::Certificate;
 use piaffe_verify::{Finding, JointPeak, VerifyError, verify};
 use serde::{Deserialize, Serialize};
 
-/// Characters of a speed without an exponent.
+/// Characters of a speed in a file's name that has four decimals.
 const LONGEST: usize = 24;
 
 /// The name of a file for the result of a gait (by its key): no two tasks share one, and those of a sweep stand in the order of
@@ -32,12 +33,6 @@ pub fn file_name(gait: &str, criterion: Criterion, speed: f64, real_legs: bool) 
 fn named(gait: &str, criterion: Criterion, speed: &str, real_legs: bool) -> String {
     let legs = if real_legs { "-real-legs" } else { "" };
     format!("{}-{}-{speed}{legs}", gait.replace('/', "-"), criterion.name())
-}
-
-/// All digits of a speed. Far from 1 m/s that would be hundreds of zeros.
-fn digits(speed: f64) -> String {
-    let plain = speed.to_string();
-    if plain.len() > LONGEST { format!("{speed:e}") } else { plain }
 }
 
 /// How an optimization ended.
@@ -392,6 +387,12 @@ impl GaitResult {
             let receipt = verify(gait.description(), &local.motion, self.speed, verdict::GRID);
             receipt.is_ok_and(|r| r.max_violation <= verdict::VIOLATION && r.cycle_error <= verdict::CYCLE_ERROR)
         };
+        let contradictions = gait.description().contradictions();
+        if !contradictions.is_empty() {
+            let all: Vec<String> = contradictions.iter().map(ToString::to_string).collect();
+            (self.status, self.message) = (Status::Infeasible, format!("infeasible: {}", all.join("; ")));
+            return;
+        }
         if found.motion.as_ref().is_some_and(exists) {
             self.message = "motions exist at this speed, but no start led to an optimum of the criterion".into();
             return;

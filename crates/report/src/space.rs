@@ -3,11 +3,12 @@
 use super::figure::Figure;
 use super::font::Weight;
 use super::ink::Ink;
-use super::number::significant;
+use super::number::{given, significant};
 use super::plot::{Axis, Curve, Plot, rounded};
 use super::scale::{Scale, domain};
 use super::scene::{Anchor, Pen, Scene, Xy};
 use super::subject::spaced;
+use piaffe_model::digits::digits;
 use piaffe_model::motion::{Costs, Criterion};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
@@ -270,7 +271,7 @@ impl Space {
     /// Both criteria of all optima of a gait at a speed, and those that no other beats in both.
     fn fronts(&self, group: &[&Spot], drawn: &Drawn) -> Option<Figure> {
         let first = group.first()?;
-        let title = format!("{} at {} m/s", spaced(&first.gait), first.speed);
+        let title = format!("{} at {} m/s", spaced(&first.gait), given(first.speed));
         let mut plot = Plot::new(title, Axis::new("torque", Criterion::Torque.unit()), Axis::new("energy", "N"));
         let better = front(group, both);
         if better.len() < 2 {
@@ -283,7 +284,7 @@ impl Space {
         }
         plot.curves.retain(|curve| !curve.segments.is_empty());
         plot.curves.push(Curve::new("front", Ink::Text, vec![better.into_iter().map(|(_, at)| at).collect()]));
-        let name = format!("front-{}-{}", first.gait.replace('/', "-"), first.speed);
+        let name = format!("front-{}-{}", first.gait.replace('/', "-"), digits(first.speed));
         let caption = "Both criteria of every optimum. Front: no other is better in both.";
         Some(Figure { data: None, ..Figure::plot(&name, &plot, caption) })
     }
@@ -303,9 +304,11 @@ impl Space {
         let better = front(group, at).into_iter().map(|(_, at)| at).collect();
         plot.curves.push(Curve::new("front", Ink::Text, vec![better]));
         let [gait, number] = [&first.gait, name].map(|text| text.replace(['/', '{', '}', ','], "-"));
-        let file = format!("cost-{gait}-{}-{}-{number}", first.criterion.name(), first.speed);
-        let caption =
-            format!("Cost at {} m/s over {name}. Front: no other robot costs less with as little of it.", first.speed);
+        let file = format!("cost-{gait}-{}-{}-{number}", first.criterion.name(), digits(first.speed));
+        let caption = format!(
+            "Cost at {} m/s over {name}. Front: no other robot costs less with as little of it.",
+            given(first.speed)
+        );
         Some(Figure { data: None, ..Figure::plot(&file, &plot, caption) })
     }
 }

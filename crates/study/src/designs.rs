@@ -3,6 +3,7 @@
 use crate::vary::{Over, Vary};
 use piaffe_codegen::{RobotFiles, SpecFile, spec};
 use piaffe_interpreter::{Robot, Unloadable};
+use piaffe_model::digits::digits;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -35,7 +36,9 @@ impl Designs {
             Over::Between(from, to) => Err(format!(
                 "{} has no values between {from} and {to}: give a step, {0}={from}..{to}:{}, or a number of samples",
                 vary.name,
-                (to - from) / 10.0
+                digits((to - from) / 10.0),
+                from = digits(*from),
+                to = digits(*to)
             )),
         };
         let axes = together(varied.iter().map(values))?;

@@ -6,6 +6,7 @@ use piaffe_interpreter::Robot;
 use piaffe_model::hash;
 use piaffe_model::motion::Criterion;
 use piaffe_optimizer::altered::Altered;
+use piaffe_optimizer::optimize::Unaskable;
 use std::collections::BTreeSet;
 
 /// A question to many robots.
@@ -74,9 +75,8 @@ impl Study {
         for gait in self.gaits.iter().filter(|gait| !known.contains(gait)) {
             faults.push(format!("the robot has no gait `{gait}`; it has {}", known.join(", ")));
         }
-        for speed in self.speeds.iter().filter(|speed| !(speed.is_finite() && **speed > 0.0)) {
-            faults.push(format!("a speed of {speed} m/s cannot be asked for: it must be a positive number"));
-        }
+        let unaskable = self.speeds.iter().filter_map(|speed| Unaskable::of(*speed));
+        faults.extend(unaskable.map(|why| why.to_string()));
         faults.extend(self.gaits.iter().filter(|_| self.real_legs).filter_map(|gait| self.not_at_real_legs(gait)));
         let lists = [
             ("design", self.designs.count()),

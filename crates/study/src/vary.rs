@@ -1,5 +1,6 @@
 //! What a person asks to be varied: `links.thigh.mass=1.0..2.0:0.1`.
 
+use piaffe_model::digits::digits;
 use std::str::FromStr;
 
 /// More values than this are a slip of the pen.
@@ -46,12 +47,12 @@ impl FromStr for Over {
         let (to, step) = rest.split_once(':').map_or((rest, None), |(to, step)| (to, Some(step)));
         let (from, to) = (number(from)?, number(to)?);
         if to < from {
-            return Err(format!("the range ends below its beginning: write {to}..{from}"));
+            return Err(format!("the range ends below its beginning: write {}..{}", digits(to), digits(from)));
         }
         let Some(step) = step else { return Ok(Over::Between(from, to)) };
         let step = number(step)?;
         if step <= 0.0 {
-            return Err(format!("a step of {step} leads nowhere: it must be positive"));
+            return Err(format!("a step of {} leads nowhere: it must be positive", digits(step)));
         }
         let count = steps(from, to, step);
         if count >= MOST as f64 || (count > 0.0 && from + step == from) {

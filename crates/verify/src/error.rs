@@ -2,6 +2,7 @@
 
 use super::integrate::Stop;
 use piaffe_model::Description;
+use piaffe_model::digits::digits;
 use piaffe_model::motion::{Course, Motion};
 use piaffe_number::Scalar;
 
@@ -22,9 +23,9 @@ pub enum VerifyError {
     Interior { phase: usize, expected: usize, found: usize },
     #[error("phase {phase}: `{list}` contains a number that is not finite")]
     NotFinite { phase: usize, list: String },
-    #[error("phase {phase} takes {duration} s: its duration must be positive and finite")]
+    #[error("phase {phase} takes {} s: its duration must be positive and finite", digits(*.duration))]
     Duration { phase: usize, duration: f64 },
-    #[error("the speed must be finite and not zero, not {0} m/s")]
+    #[error("the speed must be finite and not zero, not {} m/s", digits(*.0))]
     Speed(f64),
     #[error("a grid of {0} points is too coarse: at least {SMALLEST_GRID} are needed")]
     Grid(usize),

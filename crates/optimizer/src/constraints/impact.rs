@@ -1,8 +1,9 @@
 //! Validity of the impact (§4.2, eq. 12): the impulse pushes and does not slide, the other foot leaves.
 //!
-//! Impulse upward; tangential impulse at most μ times it; vertical velocity of the leaving foot ≥ 0, if one stood.
+//! Impulse upward; tangential impulse at most μ times it; vertical velocity of the leaving foot ≥ 0, if one stood. With limits at each
+//! real leg also the friction of each foot, and what the impact pitches the robot to either side.
 
-use super::sharing::{applies, first, length, offsets, second};
+use super::sharing::{BALANCED, applies, first, length, offsets, pitches, second};
 use piaffe_model::shape::{LandingCurvatureOutputs, TouchdownCurvatureOutputs};
 use piaffe_model::units::Units;
 use piaffe_model::{Description, FORWARD, Limit, SIDEWAYS, Transition, UP};
@@ -20,7 +21,12 @@ pub struct ImpactConstraints<T = f64> {
     y: TouchdownCurvatureOutputs,
     /// The real feet that land, from the virtual foot along Xf, if their limits count.
     feet: Vec<f64>,
+    /// The unit of what the impact pitches the robot, where that is limited.
+    pitching: Option<f64>,
 }
+
+/// What an impact may pitch the robot, in its unit: what the verdict on the real legs lets be lacking, but for rounding.
+const PITCHED: f64 = BALANCED - 1e-6;
 
 impl<T: Scalar> ImpactConstraints<T> {
     /// Of such a transition, with this coefficient of friction; none where nothing lands.
@@ -41,6 +47,7 @@ impl<T: Scalar> ImpactConstraints<T> {
             speed: units.speed(),
             y,
             feet: if applies(description) { offsets(description) } else { Vec::new() },
+            pitching: pitches(description).then(|| units.angular_momentum()),
         })
     }
 
@@ -50,13 +57,24 @@ impl<T: Scalar> ImpactConstraints<T> {
             (0, _) => Limit::VerticalImpulse,
             (1, _) | (2, false) => Limit::ImpulseFriction,
             _ if i < self.of_virtual_leg() => Limit::Leaving,
-            _ => Limit::ImpulseFrictionOfFoot,
+            _ if i < self.of_legs() => Limit::ImpulseFrictionOfFoot,
+            _ => Limit::Pitching,
         }
     }
 
     /// Number of constraints.
     pub fn count(&self) -> usize {
+        self.of_legs() + if self.pitching.is_some() { 2 } else { 0 }
+    }
+
+    fn of_legs(&self) -> usize {
         self.of_virtual_leg() + self.feet.len()
+    }
+
+    /// If value `i` is of pitching: to which side, and its unit.
+    fn side(&self, i: usize) -> Option<(f64, f64)> {
+        let side = i.checked_sub(self.of_legs())?;
+        Some((if side == 0 { 1.0 } else { -1.0 }, self.pitching?))
     }
 
     fn of_virtual_leg(&self) -> usize {
@@ -78,8 +96,11 @@ impl<T: Scalar> ImpactConstraints<T> {
         k.checked_sub(components).map_or_else(|| self.y.impulse.place(k), |k| self.y.couple.place(k))
     }
 
-    /// Scaled value `i` from (impulse…, leaving, landing, couple…).
+    /// Scaled value `i` from (impulse…, leaving, landing, couple…, pitch).
     pub fn value(&self, i: usize, y: &[T]) -> T {
+        if let Some((side, unit)) = self.side(i) {
+            return T::from(PITCHED) - self.y.pitch.value(y).scale(side / unit);
+        }
         let (mu, unit) = (self.friction, T::from(self.unit));
         if let Some(foot) = i.checked_sub(self.of_virtual_leg()) {
             return self.friction_of_foot(mu, foot, |k| y[self.index(k)]) / unit;
@@ -100,8 +121,11 @@ impl ImpactConstraints {
         ImpactConstraints::with(description, transition, description.limits.friction)
     }
 
-    /// Calls `add(index in (impulse…, leaving, landing, couple…), partial derivative)` for value `i`.
+    /// Calls `add(index in (impulse…, leaving, landing, couple…, pitch), partial derivative)` for value `i`.
     pub fn partials(&self, i: usize, y: &[f64], mut add: impl FnMut(usize, f64)) {
+        if let Some((side, unit)) = self.side(i) {
+            return add(self.y.pitch.place(0), -side / unit);
+        }
         if let Some(foot) = i.checked_sub(self.of_virtual_leg()) {
             let own: [f64; 5] = std::array::from_fn(|k| y[self.index(k)]);
             let gradient = first(&own, |v| self.friction_of_foot(self.friction.into(), foot, |k| v[k]));
@@ -127,6 +151,9 @@ impl ImpactConstraints {
 
     /// Calls `add(index, index, second derivative)` for value `i`.
     pub fn curvature(&self, i: usize, y: &[f64], mut add: impl FnMut(usize, usize, f64)) {
+        if self.side(i).is_some() {
+            return;
+        }
         if let Some(foot) = i.checked_sub(self.of_virtual_leg()) {
             let own: [f64; 5] = std::array::from_fn(|k| y[self.index(k)]);
             let hessian = second(&own, |v| self.friction_of_foot(self.friction.into(), foot, |k| v[k]));

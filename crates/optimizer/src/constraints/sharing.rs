@@ -10,7 +10,7 @@
 //!
 //! a: the foot from the virtual foot; a bar: of the virtual leg. At the impact no motor gives an impulse, so the legs of a pair, which
 //! move alike, take the same impulse in their plane; across it they take what keeps the robot from turning. Nothing is left
-//! against pitching, which must not be asked for: it never is where the hips are level with the mass centre.
+//! against pitching: no more of it may be asked for than may be lacking (`BALANCED`). Where the hips are level with the mass centre none is.
 
 use super::{Form, Limits, PathConstraint};
 use crate::friction::Friction;
@@ -26,18 +26,17 @@ pub fn applies(d: &Description) -> bool {
     d.limits.real_legs && d.is_spatial()
 }
 
-/// Whether impacts must be forbidden to pitch the robot.
-pub fn pitches(d: &Description) -> bool {
-    applies(d) && impacts_pitch(d)
-}
+/// The part of weight, or of weight × leg length, that may be lacking; at an impact of momentum. Masses and mass centres of a robot are
+/// hardly known better, and a foot that is no point presses a hundredth of a leg's length beside its middle.
+pub const BALANCED: f64 = 0.01;
 
-/// Whether impacts can pitch a robot that rolls: hips off the mass centre or rotors make them.
-pub fn impacts_pitch(d: &Description) -> bool {
+/// Whether impacts must be kept from pitching the robot: hips off the mass centre or rotors make them.
+pub fn pitches(d: &Description) -> bool {
     let same = SAME * d.leg_length();
     let hips = d.bodies.iter().filter(|b| b.parent == Some(0));
     let level = hips.flat_map(|b| &b.offset[..2]).all(|x| x.abs() < same);
     let rotors = d.joints.iter().any(|j| j.rotor_inertia != 0.0);
-    d.is_spatial() && (!level || rotors)
+    applies(d) && (!level || rotors)
 }
 
 /// Why the constraints cannot be imposed, if they cannot.

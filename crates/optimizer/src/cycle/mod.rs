@@ -184,7 +184,7 @@ impl<'a> Cycle<'a> {
         let d = gait.description();
         let variables = Variables::new(d);
         let phases: Vec<Phase> = (0..d.phases.len()).map(|k| Phase::new(d, k, elements)).collect();
-        let rows = Rows::new(d, &phases, &[]);
+        let rows = Rows::new(&phases, &[]);
         let n = variables.total();
         Cycle {
             gait,
@@ -429,7 +429,7 @@ impl<'a> Cycle<'a> {
     /// Builds the table of rows anew.
     fn count_rows(&mut self) {
         let holding: Vec<Equation> = self.holding().collect();
-        self.rows = Rows::new(self.description(), &self.phases, &holding);
+        self.rows = Rows::new(&self.phases, &holding);
         self.equality_rows.resize(self.rows.equations.len() * self.dimension(), 0.0);
     }
 

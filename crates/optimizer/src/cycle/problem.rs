@@ -10,16 +10,10 @@ use super::rows::{Equation, Row};
 use super::{Cycle, Label};
 use crate::constraints::{ImpactConstraints, PathConstraint};
 use crate::cost::Drive;
-use piaffe_model::shape::Block;
-use piaffe_model::{Description, Limit};
+use piaffe_model::Limit;
 use piaffe_sqp as sqp;
 use piaffe_sqp::{Problem, Undefined, Values, axpy, dot, multiply};
 use smallvec::SmallVec;
-
-/// Where an impact's change of angular momentum about the transverse axis stands among its results.
-pub fn pitch(d: &Description) -> Block {
-    d.shapes.touchdown_curvature.outputs.pitch
-}
 
 /// Where an inequality row is imposed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -125,7 +119,6 @@ impl Cycle<'_> {
             Equation::ClosureOfSigma(phase) => at_end(Limit::ClosureOfSigma, phase),
             Equation::Touchdown(phase) => at_end(Limit::Touchdown, phase),
             Equation::MeanSpeed => label(Limit::MeanSpeed, self.phases.len(), 0.0),
-            Equation::Pitching(phase) => at_end(Limit::Pitching, phase),
             Equation::Still { phase, joint, node } => {
                 let of = self.description().joints[joint].name.into();
                 let time = self.instant(phase, node) * self.phases[phase].duration();
@@ -271,10 +264,6 @@ impl Cycle<'_> {
                         row[k * m + self.variables.duration()] -= self.speed / length;
                     }
                 }
-                Equation::Pitching(k) => {
-                    let (p, _, place) = at_end(k);
-                    p.crossing.add_gradient(p.crossing.output_row(pitch(d).place(0)), 1.0 / momentum, place, row);
-                }
                 Equation::Still { phase, joint, node } => {
                     let p = &self.phases[phase];
                     let local = &mut local[..p.layout.len()];
@@ -353,7 +342,6 @@ impl Problem for Cycle<'_> {
                     p.landing_height(d, p.landing_foot.unwrap_or_default()) / units.length
                 }
                 Equation::MeanSpeed => (self.travel - self.asked_travel()) / units.length,
-                Equation::Pitching(k) => pitch(d).value(&self.phases[k].crossing.outputs) / units.angular_momentum(),
                 Equation::Still { phase, joint, node } => {
                     let instants = &self.phases[phase].instants;
                     instants.value(node, instants.quantities.rate(joint)) / units.rate()

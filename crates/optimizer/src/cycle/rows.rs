@@ -1,8 +1,6 @@
 //! Which equation and which limit is which row of the nonlinear program.
 
 use super::phase::Phase;
-use crate::constraints::sharing::pitches;
-use piaffe_model::Description;
 use std::ops::Range;
 
 /// What an equality is.
@@ -15,8 +13,6 @@ pub enum Equation {
     /// The foot that lands at the end of a phase is on the ground.
     Touchdown(usize),
     MeanSpeed,
-    /// The impact at the end of a phase does not pitch the robot.
-    Pitching(usize),
     /// A joint that a phase holds still does not move at a node.
     Still {
         phase: usize,
@@ -51,7 +47,6 @@ pub struct OfPhase {
     pub beta: usize,
     pub sigma: usize,
     pub touchdown: Option<usize>,
-    pub pitching: Option<usize>,
     pub path: Range<usize>,
     pub dips: Range<usize>,
     pub impacts: Range<usize>,
@@ -59,7 +54,7 @@ pub struct OfPhase {
 
 impl Rows {
     /// Of these phases, with the equations that hold joints.
-    pub fn new(d: &Description, phases: &[Phase], holding: &[Equation]) -> Rows {
+    pub fn new(phases: &[Phase], holding: &[Equation]) -> Rows {
         let mut equations = Vec::new();
         let mut of_phase = vec![OfPhase::default(); phases.len()];
         let mut add = |equation: Equation| {
@@ -72,9 +67,6 @@ impl Rows {
             rows.touchdown = phase.landing_foot.map(|_| add(Equation::Touchdown(k)));
         }
         let speed = add(Equation::MeanSpeed);
-        for (k, rows) in of_phase.iter_mut().enumerate().filter(|_| pitches(d)) {
-            rows.pitching = Some(add(Equation::Pitching(k)));
-        }
         for equation in holding {
             add(*equation);
         }

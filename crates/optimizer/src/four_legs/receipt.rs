@@ -4,15 +4,13 @@ use super::cost::RealCosts;
 use super::lack::Lack;
 use super::lift::{Lift, NotLifted};
 use super::limits::{Limit, Limits};
+use crate::constraints::sharing::BALANCED;
 use piaffe_model::Gait;
 use piaffe_model::motion::Motion;
 use serde::{Deserialize, Serialize};
 
 /// Intervals of each phase between the instants that are looked at.
 const INTERVALS: usize = 400;
-/// The part of weight, or of weight × leg length, that may be lacking. Masses and mass centres of a robot are hardly known
-/// better, and a foot that is no point presses a hundredth of a leg's length beside its middle.
-pub const BALANCED: f64 = 0.01;
 /// A margin above this is none that is violated.
 pub const LEAST_MARGIN: f64 = -1e-6;
 

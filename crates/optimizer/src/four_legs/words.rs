@@ -1,7 +1,8 @@
 //! The verdict on the real legs in words.
 
 use super::lack::{Component, Lack};
-use super::receipt::{BALANCED, Lacks, RealLegs, Verdict, Worst};
+use super::receipt::{Lacks, RealLegs, Verdict, Worst};
+use crate::constraints::sharing::BALANCED;
 use crate::result::GaitResult;
 
 /// What is lacking beyond this is no rounding.

@@ -6,6 +6,7 @@ use super::local::{Conflict, Local, Task};
 use super::multi_start::{Expected, Settings, search, start};
 use crate::result::GaitResult;
 use piaffe_model::Gait;
+use piaffe_model::digits::legible;
 use piaffe_model::motion::Criterion;
 use piaffe_model::units::Units;
 use piaffe_sqp::Control;
@@ -28,6 +29,11 @@ const ATTEMPTS: usize = 8;
 const FURTHER: f64 = 1.5;
 /// No robot is asked to go slower, in its unit of speed.
 const SLOWEST: f64 = 0.01;
+
+/// Whether no robot like this is asked to go so fast.
+pub fn is_too_fast(gait: &dyn Gait, speed: f64) -> bool {
+    speed > FASTEST * Units::new(gait.description()).speed()
+}
 
 /// What ends a gait where motions go on but optima do not.
 const BEYOND: &str = "finding an optimum among the motions that there are";
@@ -158,6 +164,9 @@ fn attempt(gait: &dyn Gait, speed: f64, from: Option<&[f64]>, settings: &Setting
 /// local searches can tell. Looks for motions at speeds ever further off on both sides, and if there seem to be none for optima, which
 /// takes longer; then bisects from what was found, and asks there.
 pub fn nearest_speed(gait: &dyn Gait, criterion: Criterion, speed: f64, settings: &Settings) -> Option<f64> {
+    if !gait.description().contradictions().is_empty() {
+        return None;
+    }
     let few = Settings { starts: Some(settings.starts.unwrap_or(STARTS).min(3)), ..settings.clone() };
     let wide = Settings { starts: Some(settings.starts.unwrap_or(WIDE).min(WIDE)), ..settings.clone() };
     let motion = |speed: f64| Some(attempt(gait, speed, None, &few)).filter(|local| local.status.is_optimal());
@@ -177,8 +186,11 @@ fn nearest_by(
 ) -> Option<f64> {
     let none = Settings { starts: Some(0), ..settings.clone() };
     let unit = Units::new(gait.description()).speed();
-    let (mut slower, mut faster) = (speed, speed);
-    for _ in 0..ATTEMPTS {
+    // From beyond all speeds that are asked for the way begins at the last of them, and leads to one side alone.
+    let beginning = speed.clamp(SLOWEST * unit, FASTEST * unit);
+    let attempts = if beginning == speed { ATTEMPTS } else { 2 * ATTEMPTS };
+    let (mut slower, mut faster) = (beginning, beginning);
+    for _ in 0..attempts {
         for (candidate, last) in [(slower / FURTHER, slower), (faster * FURTHER, faster)] {
             if !(SLOWEST * unit..=FASTEST * unit).contains(&candidate) {
                 continue;
@@ -194,7 +206,7 @@ fn nearest_by(
                     bad = middle;
                 }
             }
-            if let Some(answered) = answered(gait, criterion, [speed, good], settings) {
+            if let Some(answered) = answered(gait, criterion, [beginning, good], settings) {
                 return Some(answered);
             }
         }
@@ -218,11 +230,4 @@ fn answered(gait: &dyn Gait, criterion: Criterion, [asked, good]: [f64; 2], sett
         distance *= 2.0;
     }
     None
-}
-
-/// A positive number with four digits, rounded up or down: what is printed is what was tried.
-fn legible(number: f64, up: bool) -> f64 {
-    let unit = 10f64.powf(number.log10().floor() - 3.0);
-    let digits = if up { (number / unit).ceil() } else { (number / unit).floor() };
-    format!("{:.3e}", digits * unit).parse().unwrap_or(number)
 }

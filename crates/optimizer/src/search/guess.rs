@@ -207,7 +207,7 @@ impl Paths<'_> {
     /// The platform moves evenly forward. It is thrown up and caught as a flight of its duration demands, like a mass on a spring.
     fn platform(&self, k: usize, s: f64) -> [f64; 2] {
         let (leg, t) = (self.d.leg_length(), self.durations[k]);
-        let height = self.plan.height * leg - hip(self.d, 0)[UP];
+        let height = self.plan.height * leg - self.d.hip(0)[UP];
         let x = self.speed * (self.start(k as isize) + s * t) + self.plan.lead * leg;
         let thrown =
             |i: isize| if self.d.mode(i) == Mode::Flight { 0.5 * self.d.gravity * self.duration(i) } else { 0.0 };
@@ -238,7 +238,7 @@ impl Paths<'_> {
 
     /// Where the foot of a leg stands in the `i`-th phase.
     fn print(&self, i: isize, leg: usize) -> f64 {
-        self.speed * (self.start(i) + 0.5 * self.duration(i)) + hip(self.d, leg)[FORWARD]
+        self.speed * (self.start(i) + 0.5 * self.duration(i)) + self.d.hip(leg)[FORWARD]
     }
 }
 
@@ -253,15 +253,8 @@ fn foot_from_hip(gait: &dyn Gait, q: &[f64], leg: usize) -> [f64; 2] {
     let d = gait.description();
     let (shape, mut out) = (&d.shapes.stance.placement, d.shapes.stance.placement.zeros());
     gait.placement(Mode::Stance(leg), q, &mut out);
-    let (platform, hip) = (shape.p.of(&out), hip(d, leg));
+    let (platform, hip) = (shape.p.of(&out), d.hip(leg));
     [FORWARD, UP].map(|c| -platform[c] - hip[c])
-}
-
-/// Hip of a virtual leg from the platform's mass centre, in its axes, m.
-fn hip(d: &Description, leg: usize) -> [f64; 3] {
-    let first = d.legs[leg].first_joint;
-    let body = d.bodies.iter().find(|b| b.parent == Some(0) && b.coordinate == Some(first));
-    body.map_or([0.0; 3], |b| b.offset)
 }
 
 /// Configuration that places platform and the other foot, near a posture: damped least squares.

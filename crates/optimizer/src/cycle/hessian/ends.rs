@@ -3,10 +3,8 @@
 
 use super::EndWork;
 use super::products::congruence;
-use crate::constraints::sharing::pitches;
 use crate::cycle::Cycle;
 use crate::cycle::phase::Phase;
-use crate::cycle::problem::pitch;
 use piaffe_model::{FORWARD, Transition, UP};
 
 /// What is weighed in a state (q, q̇): σ, and the height of a foot in the air.
@@ -44,7 +42,7 @@ impl Cycle<'_> {
                 let velocity = [FORWARD, UP].map(|c| gradient[layout.centre_velocity(c)]);
                 self.takeoff_terms(before, gradient[layout.centre_height()], velocity, work, hessian);
             }
-            _ => self.impact_terms(k, gradient, lambda, mu, work, hessian),
+            _ => self.impact_terms(k, gradient, mu, work, hessian),
         }
 
         // Closure of σ and touchdown at this phase's own end.
@@ -60,15 +58,7 @@ impl Cycle<'_> {
     }
 
     /// The impact that leads to phase `k`, at the end of the phase before: q̇⁺ and what else it gives.
-    fn impact_terms(
-        &self,
-        k: usize,
-        gradient: &[f64],
-        lambda: &[f64],
-        mu: &[f64],
-        work: &mut EndWork,
-        hessian: &mut [f64],
-    ) {
+    fn impact_terms(&self, k: usize, gradient: &[f64], mu: &[f64], work: &mut EndWork, hessian: &mut [f64]) {
         let d = self.description();
         let (nq, n) = (d.orientations(), self.variables.total());
         let (p, before) = (&self.phases[k], self.before(k));
@@ -91,9 +81,6 @@ impl Cycle<'_> {
         self.weighted_impacts(before, mu, |impact, row, multiplier| {
             impact.partials(row, &b.crossing.outputs, |i, partial| outputs[i] -= multiplier * partial);
         });
-        if let Some(row) = self.rows.of(before).pitching.filter(|_| pitches(d)) {
-            outputs[pitch(d).place(0)] -= lambda[row] / self.units.angular_momentum();
-        }
 
         // In w = (q, q̇⁻) or (q, v⁻, q̇⁻).
         let size = 2 * nq + b.crossing.components();
