@@ -13,7 +13,9 @@ use piaffe::search::fastest::nearest_speed;
 use piaffe::search::journal::Journal;
 use piaffe::search::multi_start::{Settings, search};
 use piaffe::verify::sample;
+use piaffe_interpreter::Robot;
 use serde_json::Value;
+use std::path::Path;
 
 fn named(name: &str) -> &'static dyn Gait {
     GAITS.iter().copied().find(|g| g.description().key == name).unwrap()
@@ -132,6 +134,17 @@ fn the_nearest_speed_works_when_it_is_asked_for() {
         // As it is printed.
         let asked: f64 = nearest.to_string().parse().unwrap();
         assert!(optimize(gait, criterion, asked, &FEW).is_optimal(), "{name} at {asked}");
+    }
+}
+
+/// Below the greatest speed of a gait whose nearest motions have several branches, of which the fastest is rarely met.
+#[test]
+fn the_nearest_speed_does_not_hang_on_how_far_off_the_question_is() {
+    let cat = Robot::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/feasible/cat")).unwrap();
+    let trot = cat.gait("trot").unwrap();
+    for speed in [1.33, 1.36, 1.5, 3.0] {
+        let nearest = nearest_speed(&trot, Criterion::Torque, speed, &Settings::default()).unwrap();
+        assert!((1.31..1.33).contains(&nearest), "from {speed}: {nearest}");
     }
 }
 

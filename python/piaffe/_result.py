@@ -277,7 +277,7 @@ class Result:
 
     @property
     def nearest_speed(self) -> Optional[float]:
-        """Where there is no motion: the nearest speed at which there is an optimum, m/s."""
+        """Where there is no motion: the nearest speed at which an optimum was found, m/s."""
         return self._entries["nearest_speed"]  # type: ignore[no-any-return]
 
     @property

@@ -52,7 +52,7 @@ fn motion_of(result: &GaitResult) -> PyResult<Motion> {
     let which = if conflicts.is_empty() { String::new() } else { format!(": {}", conflicts.join(", ")) };
     let nearest = result
         .nearest_speed
-        .map_or(String::new(), |speed| format!("; the nearest speed that works is {} m/s", digits(speed)));
+        .map_or(String::new(), |speed| format!("; the nearest speed found to work is {} m/s", digits(speed)));
     let none = || NoOptimum::new_err(format!("{} has no motion ({}{which}{nearest})", result.name(), result.message));
     result.motion().ok_or_else(none)
 }

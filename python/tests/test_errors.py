@@ -64,7 +64,7 @@ def test_a_speed_without_motion_is_an_answer(trot: piaffe.Gait) -> None:
     assert found.status is piaffe.Status.INFEASIBLE and found.cost is None and not found.costs
     assert "mean speed" in found.conflicts and found.nearest_speed == pytest.approx(1.086, abs=0.01)
     for ask in (found.walk, found.plot, found.to_mjcf, found.to_html, found.to_csv):
-        with pytest.raises(piaffe.NoOptimum, match="no motion .*swing clearance.*nearest speed that works is 1.0"):
+        with pytest.raises(piaffe.NoOptimum, match="no motion .*swing clearance.*nearest speed found to work is 1.0"):
             ask()
 
 

@@ -19,7 +19,7 @@ pub fn run(task: Task, real_legs: bool, settings: &Settings, json: Option<&str>)
             Event::Iterate => {}
             Event::Ended(_) => bar.inc(1),
             Event::AtRealLegs => bar.set_position(0),
-            Event::NearestSpeed => bar.set_message("nearest speed that works"),
+            Event::NearestSpeed => bar.set_message("nearest speed found to work"),
         }
         Control::Continue
     };

@@ -102,7 +102,7 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
         }
     }
     match r.nearest_speed {
-        Some(v) => writeln!(out, "  The nearest speed that works is {} m/s.", digits(v))?,
+        Some(v) => writeln!(out, "  The nearest speed found to work is {} m/s.", digits(v))?,
         None if r.status == Status::Infeasible && description.contradictions().is_empty() => {
             writeln!(out, "  No speed was found that works: loosen one of these limits in the specification.")?;
         }

@@ -10,8 +10,9 @@ use piaffe_optimizer::walk::{Moment, Walk};
 /// Links can be slender rods without inertia about themselves; MuJoCo wants some: this share of the robot's mass times the square
 /// of its leg.
 const LEAST_INERTIA: f64 = 1e-9;
-/// Radii of the feet and the links, which are points and lines here, and half the platform's height, as shares of the leg.
-const FOOT: f64 = 1.0 / 75.0;
+/// Radii of the feet and the links, which are points and lines here, and half the platform's height, as shares of the leg. What is
+/// round touches the ground beside the point as soon as a link leans: the smaller the less.
+const FOOT: f64 = 1.0 / 500.0;
 const LINK: f64 = 2.0 / 75.0;
 const PLATFORM: f64 = 1.0 / 15.0;
 /// Time step as a share of √(leg/gravity).
@@ -123,10 +124,13 @@ fn limb(x: &mut Xml, d: &Description, leg: &Leg, member: &Member, bodies: &[Body
         x.leaf("geom", &[("type", "capsule".into()), ("fromto", bone), ("size", about(LINK * d.leg_length()))]);
         if rest.is_empty() {
             x.leaf("site", &[("name", super::foot_name(d, member)), ("pos", numbers(&end))]);
+            // The link ends where the sphere does.
+            let (radius, length) = (FOOT * d.leg_length(), end.iter().map(|x| x * x).sum::<f64>().sqrt());
+            let centre = end.map(|x| x * (1.0 - radius / length.max(radius)));
             let foot = [
                 ("type", "sphere".into()),
-                ("size", about(FOOT * d.leg_length())),
-                ("pos", numbers(&end)),
+                ("size", radius.to_string()),
+                ("pos", numbers(&centre)),
                 ("contype", "1".into()),
                 ("conaffinity", "1".into()),
                 ("friction", numbers(&[d.limits.friction, 0.005, 0.0001])),

@@ -116,7 +116,7 @@ pub struct GaitResult {
     /// For an infeasible problem: the constraints that conflict, worst first.
     #[serde(default)]
     pub conflicts: Vec<ConflictEntry>,
-    /// For an infeasible problem: the nearest speed at which the same search finds an optimum, if there is one, m/s.
+    /// For an infeasible problem: the nearest speed found at which the same search finds an optimum, m/s.
     pub nearest_speed: Option<f64>,
     /// All distinct local optima found, best first.
     #[serde(default)]

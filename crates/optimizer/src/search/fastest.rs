@@ -10,21 +10,32 @@ use piaffe_model::digits::legible;
 use piaffe_model::motion::Criterion;
 use piaffe_model::units::Units;
 use piaffe_sqp::Control;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::iter::successors;
 
 /// Width to which a limiting speed is bisected, in the robot's unit of speed.
 const BISECTION: f64 = 5e-4;
+/// Width to which the greatest speed with an optimum is bisected, as a share of where there are motions alone: each step is a search.
+const NARROWED: f64 = 1.0 / 32.0;
 /// First step beyond the last speed that works, and where stepping ends, in the same unit.
 const STEP: f64 = 0.06;
 const FASTEST: f64 = 6.0;
 /// Starts at a speed that may have no motion at all, where their number is not given.
 const STARTS: usize = 4;
 
-/// Starts at a speed where few have found nothing.
+/// The same where an edge is bisected, where few have found nothing, and for what comes closest to a motion at the speed itself.
+const FEW: usize = 3;
 const WIDE: usize = 8;
+const CLOSE: usize = 16;
 
+/// Speeds on each side of a speed that are looked at from what comes closest to a motion there: the first is as far off as bisection
+/// ends, each further one twice as far as the last.
+const DOUBLINGS: i32 = 9;
 /// Speeds, each further off than the one before, at which the question is asked again.
-const ATTEMPTS: usize = 8;
+const ATTEMPTS: i32 = 8;
+/// So often is the way halved between a speed without an answer and one that has it.
+const HALVINGS: usize = 3;
 /// By so much is each further off than the last.
 const FURTHER: f64 = 1.5;
 /// No robot is asked to go slower, in its unit of speed.
@@ -95,7 +106,7 @@ fn climb(gait: &dyn Gait, speed: f64, from: &[f64], settings: &Settings) -> Opti
 
 impl MaximumSpeed {
     /// The optima at the greatest speed; `results` are those at other speeds (ascending), criterion by criterion. Motions may go on where no
-    /// optimum is found any more: as long as no criterion has one, the speed is lowered towards the fastest optimum.
+    /// optimum is found any more: then the speed is bisected between that and the fastest optimum.
     pub fn optima(
         &mut self,
         gait: &dyn Gait,
@@ -105,21 +116,33 @@ impl MaximumSpeed {
         journal: &dyn Journal,
     ) -> Vec<GaitResult> {
         let known = results.iter().flatten().filter(|r| r.is_optimal()).map(|r| r.speed).fold(0.0, f64::max);
-        while self.speed > known {
+        let (edge, unit) = (self.speed, Units::new(gait.description()).speed());
+        let mut slower = (MaximumSpeed { speed: known, ended_by: vec![BEYOND.into()], ..self.clone() }, Vec::new());
+        let mut faster = None;
+        while self.speed > slower.0.speed {
             let at = |(c, line): (&Criterion, &Vec<GaitResult>)| self.optimum(gait, *c, line, settings, journal);
             let optima: Vec<_> = criteria.iter().zip(results).map(at).collect();
-            if optima.iter().any(GaitResult::is_optimal) {
+            if !optima.iter().any(GaitResult::is_optimal) {
+                faster = Some(self.speed);
+            } else if faster.is_none() {
                 return optima;
+            } else {
+                slower = (self.clone(), optima);
             }
-            let slower = 0.5 * (known + self.speed);
-            self.speed =
-                if slower - known > BISECTION * Units::new(gait.description()).speed() { slower } else { known };
+            let (good, bad) = (slower.0.speed, faster.unwrap_or(edge));
+            let width = if good > known { NARROWED * (edge - known) } else { 0.0 };
+            if bad - good <= width.max(BISECTION * unit) {
+                break;
+            }
+            self.speed = 0.5 * (good + bad);
             self.ended_by = vec![BEYOND.into()];
             let name = format!("{} motion at {}", gait.description().key, self.speed);
-            let slower = || attempt(gait, self.speed, Some(&self.theta), settings).theta;
-            self.theta = step(journal, &name, &(common(gait, settings), &self.theta), slower).0;
+            let nearby = || attempt(gait, self.speed, Some(&self.theta), settings).theta;
+            self.theta = step(journal, &name, &(common(gait, settings), &self.theta), nearby).0;
         }
-        Vec::new()
+        let optima;
+        (*self, optima) = slower;
+        optima
     }
 
     fn optimum(
@@ -160,74 +183,116 @@ fn attempt(gait: &dyn Gait, speed: f64, from: Option<&[f64]>, settings: &Setting
     best.unwrap_or_else(|| of(&start(gait, Criterion::Torque, speed, settings.seed, 0)))
 }
 
-/// For a speed without a feasible motion the nearest one at which the same question has an answer, as far as
-/// local searches can tell. Looks for motions at speeds ever further off on both sides, and if there seem to be none for optima, which
-/// takes longer; then bisects from what was found, and asks there.
+/// For a speed without a feasible motion the nearest one found at which the same question has an answer, as far as local searches can
+/// tell. Looks for motions beside what comes closest to one at the speed itself, then from nothing at speeds ever further off on both
+/// sides, and if there seem to be none for optima, which takes longer.
 pub fn nearest_speed(gait: &dyn Gait, criterion: Criterion, speed: f64, settings: &Settings) -> Option<f64> {
     if !gait.description().contradictions().is_empty() {
         return None;
     }
-    let few = Settings { starts: Some(settings.starts.unwrap_or(STARTS).min(3)), ..settings.clone() };
-    let wide = Settings { starts: Some(settings.starts.unwrap_or(WIDE).min(WIDE)), ..settings.clone() };
-    let motion = |speed: f64| Some(attempt(gait, speed, None, &few)).filter(|local| local.status.is_optimal());
-    let optimum =
-        |speed: f64| search(gait, criterion, speed, &wide, &|_| {}).optima.into_iter().next().map(|found| found.local);
-    nearest_by(&motion, gait, criterion, speed, settings)
-        .or_else(|| nearest_by(&optimum, gait, criterion, speed, settings))
-}
-
-/// The same by one way of looking for motions at a speed.
-fn nearest_by(
-    look: &dyn Fn(f64) -> Option<Local>,
-    gait: &dyn Gait,
-    criterion: Criterion,
-    speed: f64,
-    settings: &Settings,
-) -> Option<f64> {
-    let none = Settings { starts: Some(0), ..settings.clone() };
+    let at_most = |most: usize| {
+        let starts = settings.starts.map_or(most, |asked| asked.min(most));
+        Settings { starts: Some(starts), ..settings.clone() }
+    };
     let unit = Units::new(gait.description()).speed();
     // From beyond all speeds that are asked for the way begins at the last of them, and leads to one side alone.
-    let beginning = speed.clamp(SLOWEST * unit, FASTEST * unit);
-    let attempts = if beginning == speed { ATTEMPTS } else { 2 * ATTEMPTS };
-    let (mut slower, mut faster) = (beginning, beginning);
-    for _ in 0..attempts {
-        for (candidate, last) in [(slower / FURTHER, slower), (faster * FURTHER, faster)] {
-            if !(SLOWEST * unit..=FASTEST * unit).contains(&candidate) {
-                continue;
-            }
-            let Some(found) = look(candidate) else { continue };
-            let (mut good, mut bad, mut theta) = (candidate, last, found.theta);
-            while (bad - good).abs() > BISECTION * unit {
-                let middle = 0.5 * (good + bad);
-                let local = attempt(gait, middle, Some(&theta), &none);
-                if local.status.is_optimal() {
-                    (good, theta) = (middle, local.theta);
-                } else {
-                    bad = middle;
-                }
-            }
-            if let Some(answered) = answered(gait, criterion, [beginning, good], settings) {
-                return Some(answered);
-            }
-        }
-        (slower, faster) = (slower / FURTHER, faster * FURTHER);
-    }
-    None
+    let asked = speed.clamp(SLOWEST * unit, FASTEST * unit);
+    let attempts = if asked == speed { ATTEMPTS } else { 2 * ATTEMPTS };
+    let question = Question { gait, criterion, asked, settings, few: at_most(FEW) };
+    let closest = question.closest(&at_most(CLOSE));
+    let (none, wide) = (at_most(0), at_most(WIDE));
+    let beside = |speed: f64| attempt(gait, speed, closest.as_deref(), &none);
+    let motion = |speed: f64| attempt(gait, speed, None, &question.few);
+    let optimum = |speed: f64| {
+        let optima = search(gait, criterion, speed, &wide, &|_| {}).optima;
+        optima.into_iter().next().map_or_else(|| beside(speed), |found| found.local)
+    };
+    let close = |k| BISECTION * unit * 2f64.powi(k);
+    let near: Vec<_> = (0..DOUBLINGS).map(|k| [asked - close(k), asked + close(k)]).collect();
+    let far: Vec<_> = (1..=attempts).map(|k| [-k, k].map(|k| asked * FURTHER.powi(k))).collect();
+    let answer = |look, speeds| question.answer(look, speeds);
+    answer(&beside, &near).or_else(|| answer(&motion, &far)).or_else(|| answer(&optimum, &far))
 }
 
-/// From `good`, or further away from `asked`, the first speed at which a search finds an optimum whose receipt holds, with
-/// nothing known but the question.
-fn answered(gait: &dyn Gait, criterion: Criterion, [asked, good]: [f64; 2], settings: &Settings) -> Option<f64> {
-    let mut distance = good - asked;
-    for _ in 0..ATTEMPTS {
-        let speed = legible(asked + distance, distance > 0.0);
-        if speed > 0.0 && speed != asked {
-            let found = search(gait, criterion, speed, settings, &|_| {});
-            if GaitResult::new(gait, criterion, speed, &found, settings, || 0.0).is_optimal() {
-                return Some(speed);
+/// What has no answer at a speed.
+struct Question<'a> {
+    gait: &'a dyn Gait,
+    criterion: Criterion,
+    asked: f64,
+    settings: &'a Settings,
+    /// Where an edge is bisected.
+    few: Settings,
+}
+
+impl Question<'_> {
+    /// Of the starts the end of the one that comes closest to a motion.
+    fn closest(&self, settings: &Settings) -> Option<Vec<f64>> {
+        let task = Task { gait: self.gait, criterion: Criterion::Torque, speed: self.asked };
+        let end = |k| {
+            let start = start(self.gait, Criterion::Torque, self.asked, settings.seed, k);
+            task.nearest_motion(&start, &mut |_| Control::Continue)
+        };
+        let ends: Vec<Local> = (0..settings.starts.unwrap_or(CLOSE)).into_par_iter().map(end).collect();
+        ends.into_iter().min_by(|a, b| a.kkt.violation.total_cmp(&b.kkt.violation)).map(|end| end.theta)
+    }
+
+    /// The nearest answer by one way of looking for motions, at pairs of speeds on both sides, each further off than the last.
+    fn answer(&self, look: &dyn Fn(f64) -> Local, speeds: &[[f64; 2]]) -> Option<f64> {
+        let unit = Units::new(self.gait.description()).speed();
+        let mut last = [self.asked; 2];
+        for pair in speeds {
+            for (candidate, last) in pair.iter().zip(last) {
+                if !(SLOWEST * unit..=FASTEST * unit).contains(candidate) {
+                    continue;
+                }
+                let found = look(*candidate);
+                if found.status.is_optimal()
+                    && let Some(speed) = self.beyond(self.edge([*candidate, last], found.theta))
+                {
+                    return Some(speed);
+                }
+            }
+            last = *pair;
+        }
+        None
+    }
+
+    /// Between a speed with this motion and one where none was found, the last that motions lead to.
+    fn edge(&self, [mut good, mut bad]: [f64; 2], mut theta: Vec<f64>) -> f64 {
+        while (bad - good).abs() > BISECTION * Units::new(self.gait.description()).speed() {
+            let middle = 0.5 * (good + bad);
+            let local = attempt(self.gait, middle, Some(&theta), &self.few);
+            if local.status.is_optimal() {
+                (good, theta) = (middle, local.theta);
+            } else {
+                bad = middle;
             }
         }
-        distance *= 2.0;
+        good
     }
-    None
+
+    /// From `good`, or further away, a speed at which a search finds an optimum whose receipt holds, with nothing known but the question.
+    fn beyond(&self, good: f64) -> Option<f64> {
+        let Question { gait, criterion, asked, settings, .. } = *self;
+        let at = |distance: f64| {
+            let speed = Some(legible(asked + distance, distance > 0.0)).filter(|v| *v > 0.0 && *v != asked)?;
+            let found = search(gait, criterion, speed, settings, &|_| {});
+            GaitResult::new(gait, criterion, speed, &found, settings, || 0.0).is_optimal().then_some(speed)
+        };
+        let first = good - asked;
+        let mut distances = successors(Some(first), |last| Some(2.0 * last)).take(ATTEMPTS as usize);
+        let (mut far, mut answer) = distances.find_map(|distance| Some((distance, at(distance)?)))?;
+        if far == first {
+            return Some(answer);
+        }
+        let mut near = 0.5 * far;
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (near + far);
+            match at(middle) {
+                Some(speed) => (far, answer) = (middle, speed),
+                None => near = middle,
+            }
+        }
+        Some(answer)
+    }
 }
