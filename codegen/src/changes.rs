@@ -1,6 +1,7 @@
 //! What is asked for beside a robot's files, for one run: other numbers, other limits, stronger motors, a load. It is written into
 //! the files, so that what comes of them says it.
 
+use crate::config::clash;
 use crate::spec;
 use crate::{RobotFiles, SpecFile};
 use std::collections::BTreeSet;
@@ -48,8 +49,12 @@ impl Changes {
     /// Everything that is not there to be changed, or is to be two things at once; the rest is changed all the same.
     pub fn apply(&self, files: &mut RobotFiles) -> Result<(), String> {
         let durations = self.durations(files);
-        let mut faults: Vec<String> =
-            durations.iter().filter_map(|(_, name, value)| self.contradicts(name, *value)).collect();
+        // What is wrong with the numbers themselves is told where they are set.
+        let (wanted, _) = files.wanted(self.named());
+        let clashes = |(_, name, value): &(usize, String, f64)| {
+            wanted.get(name).filter(|other| *other != value).map(|other| clash(name, *value, *other))
+        };
+        let mut faults: Vec<String> = durations.iter().filter_map(clashes).collect();
         faults.sort();
         faults.dedup();
         for (gait, name, value) in durations {
@@ -58,8 +63,7 @@ impl Changes {
                 None => faults.push(format!("{} has no number `{name}`", files.gaits[gait].path)),
             }
         }
-        let named = self.numbers.iter().map(|(name, value)| (name.as_str(), *value));
-        faults.extend(files.set_all(named.chain(self.limits())).err().into_iter().flatten());
+        faults.extend(files.set_all(self.named().chain(self.limits())).err().into_iter().flatten());
         if let Some(scale) = self.torque_scale {
             let stronger: Vec<_> = torques(files).into_iter().map(|(name, value)| (name, scale * value)).collect();
             let stronger = stronger.iter().map(|(name, value)| (name.as_str(), *value));
@@ -91,6 +95,10 @@ impl Changes {
         named.chain(limits).chain(durations).chain(torques.into_iter().flatten()).chain(carrying).collect()
     }
 
+    fn named(&self) -> impl Iterator<Item = (&str, f64)> {
+        self.numbers.iter().map(|(name, value)| (name.as_str(), *value))
+    }
+
     fn limits(&self) -> impl Iterator<Item = (&str, f64)> {
         let limits = [
             ("limits.friction", self.friction),
@@ -115,14 +123,6 @@ impl Changes {
             on_a_foot.collect::<Vec<_>>()
         };
         files.gaits.iter().enumerate().flat_map(of_gait).collect()
-    }
-
-    /// What to say if a number that is to become this is named with another one.
-    fn contradicts(&self, name: &str, value: f64) -> Option<String> {
-        let named =
-            self.numbers.iter().filter(|(named, _)| spec::alternatives(named).iter().any(|named| named == name));
-        let other = named.map(|(_, other)| other).find(|other| **other != value)?;
-        Some(format!("`{name}` cannot be both {value:?} and {other:?}: give it once"))
     }
 }
 

@@ -162,39 +162,44 @@ fn how_to_set_aside(folder: &Path, robots: &[RobotFiles]) -> String {
 
 /// The robots of a folder: its own first, then those of the folders in it, by name.
 fn robots(root: &Path, folder: &Path) -> Result<Vec<RobotFiles>, String> {
-    let mut robots = Vec::new();
-    let own = folder.join("robot.toml");
-    if root.join(&own).exists() {
-        robots.push(robot_files(root, folder, String::new())?);
-    }
-    for path in entries(root, folder)? {
-        if root.join(&path).join("robot.toml").exists() {
-            let module = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            robots.push(robot_files(root, &path, module)?);
-        }
-    }
+    let robot = |path: &PathBuf| {
+        let module = if path == folder { "".into() } else { path.file_name().unwrap_or_default().to_string_lossy() };
+        robot_files(root, path, module.into_owned())
+    };
+    let robots: Vec<RobotFiles> = with_robots(root, folder)?.iter().map(robot).collect::<Result<_, _>>()?;
     if robots.is_empty() {
+        let own = folder.join("robot.toml");
         return Err(format!("there is no robot in {}: write {}", folder.display(), own.display()));
     }
     Ok(robots)
+}
+
+/// The folder itself and those in it, as far as they have a robot.
+fn with_robots(root: &Path, folder: &Path) -> Result<Vec<PathBuf>, String> {
+    let mut folders = vec![folder.to_path_buf()];
+    folders.extend(entries(root, folder)?);
+    folders.retain(|path| root.join(path).join("robot.toml").exists());
+    Ok(folders)
+}
+
+/// The files of a robot's gaits, by name.
+fn gait_files(root: &Path, folder: &Path) -> Result<Vec<PathBuf>, String> {
+    let gaits = folder.join("gaits");
+    let mut files = if root.join(&gaits).exists() { entries(root, &gaits)? } else { Vec::new() };
+    files.retain(|path| path.extension().is_some_and(|e| e == "toml"));
+    Ok(files)
 }
 
 fn robot_files(root: &Path, folder: &Path, module: String) -> Result<RobotFiles, String> {
     if !root.join(folder).is_dir() {
         return Err(format!("there is no folder {}: a robot's has robot.toml and gaits/*.toml", folder.display()));
     }
-    let gaits = folder.join("gaits");
-    let mut files = Vec::new();
-    let there = if root.join(&gaits).exists() { entries(root, &gaits)? } else { Vec::new() };
-    for path in there {
-        if path.extension().is_some_and(|e| e == "toml") {
-            files.push(read(root, &path)?);
-        }
-    }
+    let files: Vec<SpecFile> =
+        gait_files(root, folder)?.iter().map(|path| read(root, path)).collect::<Result<_, _>>()?;
     if files.is_empty() {
         return Err(format!(
             "there is no gait in {}: write one, for example {0}/trot.toml; or set the robot aside: rename {}",
-            gaits.display(),
+            folder.join("gaits").display(),
             folder.join("robot.toml").display()
         ));
     }
@@ -222,6 +227,19 @@ impl RobotFiles {
     /// What is missing or cannot be read.
     pub fn of_folder(folder: &Path) -> Result<Vec<RobotFiles>, String> {
         robots(Path::new(""), folder)
+    }
+
+    /// The paths of all that a build reads in a folder of robots, whatever is in the files.
+    ///
+    /// # Errors
+    /// If a folder cannot be read.
+    pub fn paths(folder: &Path) -> Result<Vec<PathBuf>, String> {
+        let mut paths = Vec::new();
+        for folder in with_robots(Path::new(""), folder)? {
+            paths.push(folder.join("robot.toml"));
+            paths.extend(gait_files(Path::new(""), &folder)?);
+        }
+        Ok(paths)
     }
 
     /// Changes a number where it stands: in the robot's file, or else in those of the gaits that have it. A name with braces,
@@ -266,7 +284,10 @@ impl RobotFiles {
     }
 
     /// What single numbers are to become, and what is wrong with that.
-    fn wanted<'n>(&self, numbers: impl IntoIterator<Item = (&'n str, f64)>) -> (BTreeMap<String, f64>, Vec<String>) {
+    pub(crate) fn wanted<'n>(
+        &self,
+        numbers: impl IntoIterator<Item = (&'n str, f64)>,
+    ) -> (BTreeMap<String, f64>, Vec<String>) {
         let old: BTreeMap<String, f64> = self.numbers().into_iter().collect();
         let old = |name: &str| old.get(name).copied().unwrap_or(0.0);
         let (mut wanted, mut faults) = (BTreeMap::new(), Vec::new());
@@ -281,7 +302,7 @@ impl RobotFiles {
                 let value = if old(&name) * first < 0.0 { -value } else { value };
                 match wanted.get(&name) {
                     Some(other) if *other != value => {
-                        faults.push(format!("`{name}` cannot be both {other:?} and {value:?}: give it once"));
+                        faults.push(clash(&name, *other, value));
                     }
                     _ => drop(wanted.insert(name, value)),
                 }
@@ -319,6 +340,11 @@ impl RobotFiles {
             std::path::absolute(folder).ok().and_then(|path| Some(path.file_name()?.to_string_lossy().into_owned()));
         robot_files(Path::new(""), folder, name.unwrap_or_default())
     }
+}
+
+/// What to say of a number that is to be two things at once.
+pub(crate) fn clash(name: &str, one: f64, other: f64) -> String {
+    format!("`{name}` cannot be both {one:?} and {other:?}: give it once")
 }
 
 /// What [`generate`] says of specifications before it derives anything: in milliseconds.

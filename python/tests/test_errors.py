@@ -68,6 +68,12 @@ def test_a_speed_without_motion_is_an_answer(trot: piaffe.Gait) -> None:
             ask()
 
 
+def test_limits_that_no_motion_keeps_need_no_search(trot: piaffe.Gait) -> None:
+    found = piaffe.optimize(trot.set({"limits.min_vertical_force": 500.0}), 0.6)
+    assert found.status is piaffe.Status.INFEASIBLE and "min_vertical_force = 500 N" in found.message
+    assert "135.9 N" in found.message and found.nearest_speed is None
+
+
 def test_texts_that_are_no_results(result: piaffe.Result) -> None:
     for text in ("", "[]", "{}", "{", result.to_json()[:-5]):
         with pytest.raises(piaffe.Error, match="this is no result of piaffe: "):

@@ -6,7 +6,7 @@ use piaffe_codegen::RobotFiles;
 use piaffe_codegen::spec::unusable_as_folder;
 use piaffe_model::Gait;
 use sha2::{Digest, Sha256};
-use std::path::Path;
+use std::path::{MAIN_SEPARATOR, Path};
 use std::sync::OnceLock;
 
 /// What a build knows: the robots' gaits, and the specification that they come from.
@@ -110,28 +110,10 @@ fn compare() -> Vec<Changed> {
     of_build.chain(new).collect()
 }
 
-/// What a build would read now.
+/// What a build would read now, as it would be named there.
 fn files() -> Vec<String> {
-    let names = |folder: &str| -> Vec<String> {
-        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-        let mut names: Vec<String> = entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
-        names.retain(|name| !name.starts_with('.'));
-        names.sort();
-        names
-    };
-    let folder = build().folder;
-    let mut folders = vec![folder.to_string()];
-    folders.extend(names(folder).into_iter().map(|name| format!("{folder}/{name}")));
-    let mut files = Vec::new();
-    for folder in folders {
-        let robot = format!("{folder}/robot.toml");
-        if Path::new(&robot).exists() {
-            files.push(robot);
-            let gaits = names(&format!("{folder}/gaits")).into_iter().filter(|name| name.ends_with(".toml"));
-            files.extend(gaits.map(|name| format!("{folder}/gaits/{name}")));
-        }
-    }
-    files
+    let paths = RobotFiles::paths(Path::new(build().folder)).unwrap_or_default();
+    paths.iter().map(|path| path.display().to_string().replace(MAIN_SEPARATOR, "/")).collect()
 }
 
 fn digest(text: &[u8]) -> String {

@@ -2,10 +2,10 @@
 
 use super::{input, robots, study};
 use anyhow::{Context, anyhow, bail};
-use piaffe_optimizer::audit::Audit;
 use piaffe_optimizer::readback::Readback;
 use piaffe_optimizer::result::GaitResult;
 use piaffe_report::overview::Overview;
+use piaffe_report::{Record, Standing};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -98,15 +98,12 @@ pub fn readback(file: &Path) -> anyhow::Result<Readback<'static>> {
 /// If it cannot be read, is of no gait that can be had, or states what its motion does not do.
 pub fn confirmed(file: &Path) -> anyhow::Result<GaitResult> {
     let name = input::name(file);
-    let Stated { result, value, .. } = read_one(file)?;
-    let gait = robots::of(&result).map_err(|why| anyhow!("{name}: {why}"))?;
-    let confirmed = match result.is_optimal() {
-        true => Readback::new(result, &[gait])?.result,
-        false => match Audit::new(&value, &result, &[gait]).objection() {
-            Some(why) => bail!("{name} does not hold: {why}"),
-            None => result,
-        },
-    };
+    let stated = read_one(file)?.result;
+    let gait = robots::of(&stated).map_err(|why| anyhow!("{name}: {why}"))?;
+    let Record { result: confirmed, standing, .. } = Record::read(stated, &[gait]);
+    if let Standing::NotConfirmed(why) = standing {
+        bail!("{name}: {why}");
+    }
     let specification = confirmed.specification.or_else(|| gait.specification().cloned());
     Ok(GaitResult { specification, ..confirmed })
 }

@@ -70,11 +70,8 @@ impl Folder {
     /// If it cannot be written to, or another run is doing so.
     pub fn open(path: &Path, bar: Progress) -> anyhow::Result<Folder> {
         std::fs::create_dir_all(path).with_context(|| format!("cannot create {}", input::name(path)))?;
-        let name = path.join(JOURNAL);
+        let name = file_in(path)?;
         let cannot = || format!("cannot use {}", input::name(&name));
-        if name.metadata().is_ok_and(|there| !there.is_file()) {
-            bail!("{}: it is no file", cannot());
-        }
         let mut journal = OpenOptions::new().read(true).append(true).create(true).open(&name).with_context(cannot)?;
         if let Err(TryLockError::WouldBlock) = journal.try_lock() {
             bail!("another run is writing to {}: wait for it, or give another --out", input::name(path));
@@ -82,11 +79,11 @@ impl Folder {
         whole::tidy(path);
         let mut bytes = Vec::new();
         journal.read_to_end(&mut bytes).with_context(cannot)?;
-        let whole = bytes.iter().rposition(|b| *b == b'\n').map_or(0, |last| last + 1);
-        if whole < bytes.len() {
-            journal.set_len(whole as u64).with_context(cannot)?;
+        let whole = whole_lines(&bytes);
+        if whole.len() < bytes.len() {
+            journal.set_len(whole.len() as u64).with_context(cannot)?;
         }
-        let known = entries(&name, &bytes[..whole]);
+        let known = entries(&name, whole);
         Ok(Folder { path: path.into(), bar, state: Mutex::new(State { journal, known, failure: None }) })
     }
 
@@ -140,14 +137,23 @@ impl Folder {
 /// # Errors
 /// If its journal cannot be read.
 pub fn found(folder: &Path) -> anyhow::Result<HashMap<String, Value>> {
+    let name = file_in(folder)?;
+    let bytes = std::fs::read(&name).with_context(|| format!("cannot read {}", input::name(&name)))?;
+    Ok(entries(&name, whole_lines(&bytes)))
+}
+
+/// The journal of a folder, a file if it is there.
+fn file_in(folder: &Path) -> anyhow::Result<PathBuf> {
     let name = folder.join(JOURNAL);
-    let cannot = || format!("cannot read {}", input::name(&name));
     if name.metadata().is_ok_and(|there| !there.is_file()) {
-        bail!("{}: it is no file", cannot());
+        bail!("cannot use {}: it is no file", input::name(&name));
     }
-    let bytes = std::fs::read(&name).with_context(cannot)?;
-    let whole = bytes.iter().rposition(|b| *b == b'\n').map_or(0, |last| last + 1);
-    Ok(entries(&name, &bytes[..whole]))
+    Ok(name)
+}
+
+/// Without an end that was cut off.
+fn whole_lines(bytes: &[u8]) -> &[u8] {
+    &bytes[..bytes.iter().rposition(|b| *b == b'\n').map_or(0, |last| last + 1)]
 }
 
 /// The steps of a journal with their outcomes. Damage is told.
