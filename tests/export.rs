@@ -9,10 +9,12 @@ mod rubbing;
 #[path = "gaits/walking.rs"]
 mod walking;
 
+use piaffe::import::{Options, import};
 use piaffe::model::{Description, Gait, Rotation};
 use piaffe::motion::Criterion;
 use piaffe::result::GaitResult;
 use piaffe::walk::{Moment, Walk};
+use piaffe_codegen::spec::parse_robot;
 use program::{optimum, piaffe};
 use python::{ask, python};
 use serde_json::{Value, json};
@@ -137,6 +139,26 @@ fn numbers(value: &Value) -> Vec<f64> {
 
 /// The mass matrix of the real robot, its legs coupled as the gait couples them, is A of eq. 5; and the walk's
 /// torques and reactions are what MuJoCo says that its accelerations take.
+/// Where the legs end: their feet are points here, and round there.
+#[test]
+fn what_is_exported_for_mujoco_is_imported_with_the_same_legs() {
+    let gait = walking().find(|gait| gait.description().key == "trot").copied().unwrap() as &dyn Gait;
+    let (result, _) = optimum(gait, Criterion::Torque);
+    let text = String::from_utf8(export(&result, &["--format", "mjcf"])).unwrap();
+    let options = Options { velocities: vec!["20".parse().unwrap()], ..Options::default() };
+    let made = import(&text, &options).unwrap();
+    let robot = parse_robot("robot.toml", &made.robot).unwrap().robot;
+    let d = gait.description();
+    for leg in &robot.legs {
+        let member = d.legs.iter().flat_map(|l| l.members.iter()).find(|m| m.name == leg.name).unwrap();
+        let ends = leg.chain.iter().map(|s| s.link.end);
+        let ours = member.bodies[1..].iter().map(|b| b.offset).chain([member.foot]);
+        for (end, own) in ends.zip(ours) {
+            assert!(end.iter().zip(own).all(|(a, b)| (a - b).abs() < 1e-6), "{}: {end:?} and {own:?}", leg.name);
+        }
+    }
+}
+
 #[test]
 fn mujoco_agrees_about_masses_feet_and_inverse_dynamics_of_the_real_robot() {
     let Some(python) = python() else { return };
@@ -167,6 +189,9 @@ fn mujoco_agrees_about_masses_feet_and_inverse_dynamics_of_the_real_robot() {
         // Without a floating base, MuJoCo's reader of URDF makes the platform part of the world.
         let legs = answer["mass_urdf"].as_f64().unwrap();
         assert!((legs - mass).abs() < 1e-9 || (legs - (mass - d.bodies[0].mass)).abs() < 1e-9, "{legs} of {mass}");
+        // Both feet of an exchange touch the ground, and nothing is in it.
+        let depth = answer["depth"].as_f64().unwrap() / d.leg_length();
+        assert!((0.0..1e-3).contains(&depth), "{}: {depth} legs", d.gait);
         let start = numbers(&answer["start"]);
         let wanted = numbers(&moments[0]["qpos"]);
         assert!(start.iter().zip(&wanted).all(|(a, b)| (a - b).abs() < 1e-12));

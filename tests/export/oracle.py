@@ -8,6 +8,10 @@ import numpy
 
 request = json.load(sys.stdin)
 model = mujoco.MjModel.from_xml_path(request["model"])
+data = mujoco.MjData(model)
+mujoco.mj_resetDataKeyframe(model, data, model.key("start").id)
+mujoco.mj_forward(model, data)
+depth = max((-contact.dist for contact in data.contact), default=0.0)
 model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
 data = mujoco.MjData(model)
 moments = []
@@ -33,6 +37,7 @@ answer = {
     "mass": float(sum(model.body_mass)),
     "mass_urdf": float(sum(from_urdf.body_mass)),
     "start": model.key("start").qpos.tolist(),
+    "depth": depth,
     "moments": moments,
     "frictionloss": model.dof_frictionloss.tolist(),
     "arrays": arrays,
