@@ -146,23 +146,15 @@ impl Designs {
                 }
             }
         }
-        // What is twice is told; of the rest each becomes something else.
-        let singles = known.keys().enumerate().map(|(k, name)| (name.as_str(), (k + 1) as f64));
+        // What is twice is told.
+        let singles = known.keys().map(|name| (name.as_str(), 1.0));
         faults.extend(base.files().clone().set_all(singles).err().into_iter().flatten());
         faults
     }
 
-    /// Names of the base robot's numbers that are not the same in all designs, or need not be.
-    pub fn varied(&self, base: &Robot) -> BTreeSet<String> {
-        let before: BTreeMap<String, f64> = base.files().numbers().into_iter().collect();
-        let singles: BTreeSet<String> = self.names.iter().flat_map(|name| spec::alternatives(name)).collect();
-        let another = |name: &str| 2.0 * before.get(name).map_or(0.0, |value| value.abs()) + 1.0;
-        let probes: Vec<(&str, f64)> = singles.iter().map(|name| (name.as_str(), another(name))).collect();
-        let mut files = base.files().clone();
-        // What is wrong with the names is told elsewhere.
-        let _ = files.set_all(probes);
-        let changed = files.numbers().into_iter().filter(|(name, value)| before.get(name) != Some(value));
-        changed.map(|(name, _)| name).chain(singles.iter().cloned()).collect()
+    /// Names of the numbers that are not the same in all designs, or need not be.
+    pub fn varied(&self) -> BTreeSet<String> {
+        self.names.iter().flat_map(|name| spec::alternatives(name)).collect()
     }
 
     /// Designs that have all that differs: of each number those in which it is least and greatest.
