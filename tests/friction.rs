@@ -8,7 +8,7 @@ use piaffe::cycle::{Cycle, theta};
 use piaffe::examine::Examination;
 use piaffe::four_legs::Lift;
 use piaffe::interpreter::Interpreted;
-use piaffe::model::Gait;
+use piaffe::model::{Gait, Lever};
 use piaffe::motion::{Criterion, Motion};
 use piaffe::result::{GaitResult, Status};
 use piaffe::search::local::{Local, Task};
@@ -50,7 +50,11 @@ fn a_robot_whose_keys_say_no_friction_is_the_robot_without_them() {
     for name in GAITS {
         let [bare, zero] = [plain.gait(name).unwrap(), with(none).gait(name).unwrap()];
         assert_eq!(format!("{:?}", bare.description()), format!("{:?}", zero.description()));
-        assert_eq!(format!("{:?}", bare.levers()), format!("{:?}", zero.levers()));
+        // A zero that stands in a file has a slope.
+        let is_damping = |lever: &&Lever| lever.name.ends_with(".damping");
+        let (damping, levers): (Vec<&Lever>, Vec<&Lever>) = zero.levers().iter().partition(is_damping);
+        assert_eq!(format!("{:?}", bare.levers()), format!("{levers:?}"));
+        assert_eq!(damping.iter().map(|lever| lever.value).collect::<Vec<_>>(), [0.0; 2], "{name}");
     }
     let cost = |robot: &Robot| optima(&robot.gait("trot").unwrap(), Criterion::Energy);
     let [bare, zero] = [cost(&plain), cost(&with(none))].map(|r| (r.cost.unwrap().to_bits(), r.variables));

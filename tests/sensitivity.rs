@@ -1,16 +1,18 @@
-//! Slopes of the optimum in limits and speed against optima of changed problems. Those in masses and lengths need robots
-//! with other dynamics: see family/tests.
+//! Slopes of the optimum in limits and speed against optima of changed problems, and those in the numbers of a robot's file against
+//! optima of changed files; of the shipped robots: see family/tests.
 
 #[path = "gaits/walking.rs"]
 mod walking;
 
+use piaffe::Robot;
 use piaffe::altered::Altered;
 use piaffe::model::{Gait, Lever};
 use piaffe::motion::Criterion;
 use piaffe::search::local::{Local, Task};
 use piaffe::search::multi_start::{Settings, search};
-use piaffe::sensitivity::{Sensitivities, sensitivities};
+use piaffe::sensitivity::{Sensitivities, Sensitivity, sensitivities};
 use piaffe::sqp::Control;
+use piaffe_codegen::RobotFiles;
 use walking::walking;
 
 #[path = "flight/gaits.rs"]
@@ -138,4 +140,62 @@ fn slopes_in_limits_and_speed_are_those_of_optima_of_changed_problems() {
         }
     }
     assert!(compared > 20, "{compared}");
+}
+
+/// A robot of which no number is shipped: what its file says is changed there, and the optimum found anew.
+#[test]
+fn slopes_are_in_the_numbers_that_stand_in_the_file() {
+    let files = RobotFiles::read(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/sensitivity/heron").as_ref()).unwrap();
+    let files = RobotFiles { module: String::new(), ..files };
+    let gait = |files: RobotFiles| Robot::new(files).ok()?.gait("walk").ok();
+    let (heron, criterion, speed) = (gait(files.clone()).unwrap(), Criterion::Torque, 0.12);
+    let found = search(&heron, criterion, speed, &Settings::default(), &|_| {});
+    let near = &found.optima[0].local;
+    let best = near.costs.of(criterion);
+    let slopes = sensitivities(&heron, criterion, speed, &near.motion).unwrap().slopes;
+    let least = |name: &str, value: f64| {
+        let mut changed = files.clone();
+        changed.set(name, value).unwrap();
+        Some(cost(&gait(changed)?, criterion, speed, near))
+    };
+    let mut compared = Vec::new();
+    for Sensitivity { parameter: name, value, unit, slope, .. } in &slopes {
+        if name == "speed" || *slope == 0.0 {
+            continue;
+        }
+        // Of what is none, something that would be little there.
+        let size = match unit.as_str() {
+            _ if *value != 0.0 => value.abs(),
+            "m" => 1e-2,
+            "kg" => 1e-4,
+            "N·m·s/rad" => 1e-7,
+            "kg·m²" => 1e-11,
+            _ => panic!("{name}: {unit}"),
+        };
+        let h = 1e-3 * size;
+        // To one side where there is nothing on the other.
+        let differences = match (least(name, value + h), least(name, value - h)) {
+            (Some(more), Some(less)) => (more - less) / (2.0 * h),
+            (Some(more), None) => (4.0 * more - least(name, value + 2.0 * h).unwrap() - 3.0 * best) / (2.0 * h),
+            (None, Some(less)) => (3.0 * best - 4.0 * less + least(name, value - 2.0 * h).unwrap()) / (2.0 * h),
+            (None, None) => panic!("no robot with another {name}"),
+        };
+        let (exact, differences) = (slope * size / best, differences * size / best);
+        assert!((exact - differences).abs() < 2e-3 * (0.1 + exact.abs()), "{name}: {exact} {differences}");
+        compared.push(name.as_str());
+    }
+    for name in [
+        "links.meta.mass",
+        "links.meta.foot_mass",
+        "links.meta.length.x",
+        "links.meta.length.y",
+        "links.meta.com.x",
+        "links.tibia.length",
+        "links.tibia.foot_mass",
+        "joints.hip.damping",
+        "actuators.m.rotor_inertia",
+        "legs.{left,right}.mount.x",
+    ] {
+        assert!(compared.contains(&name), "{name}: {compared:?}");
+    }
 }

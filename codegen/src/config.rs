@@ -243,7 +243,7 @@ impl RobotFiles {
     }
 
     /// Changes a number where it stands: in the robot's file, or else in those of the gaits that have it. A name with braces,
-    /// `links.{left,right}_shin.mass`, changes several: each becomes the value, those of opposite signs stay so.
+    /// `links.{left,right}_shin.mass`, changes several: each becomes the value, those of opposite signs stay so. Nothing else changes.
     ///
     /// # Errors
     /// If there is none of this name, which there are.
@@ -257,15 +257,10 @@ impl RobotFiles {
     /// All names that are none, and numbers that cannot be what is wanted of them; the others are changed all the same.
     pub fn set_all<'n>(&mut self, numbers: impl IntoIterator<Item = (&'n str, f64)>) -> Result<(), Vec<String>> {
         let (wanted, mut faults) = self.wanted(numbers);
-        let mut set_in = |file: &mut SpecFile, wanted: &[(&str, f64)]| match spec::set_all(&file.text, wanted) {
-            Ok((text, known)) => {
-                file.text = text;
-                known
-            }
-            Err(fault) => {
-                faults.push(fault);
-                vec![true; wanted.len()]
-            }
+        let set_in = |file: &mut SpecFile, wanted: &[(&str, f64)]| {
+            let (text, known) = spec::set_all(&file.text, wanted);
+            file.text = text;
+            known
         };
         let mut rest: Vec<(&str, f64)> = wanted.iter().map(|(name, value)| (name.as_str(), *value)).collect();
         let in_robot = set_in(&mut self.robot, &rest);
@@ -297,7 +292,7 @@ impl RobotFiles {
                 continue;
             }
             let names = spec::alternatives(name);
-            let first = names.first().map_or(0.0, |name| old(name));
+            let first = names.iter().map(|name| old(name)).find(|old| *old != 0.0).unwrap_or(0.0);
             for name in names {
                 let value = if old(&name) * first < 0.0 { -value } else { value };
                 match wanted.get(&name) {

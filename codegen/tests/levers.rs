@@ -5,7 +5,8 @@ mod common;
 use common::{FAMILIES, GAITS, files, shipped, specification, with_phases};
 use piaffe_codegen::dynamics::{kernels, lowest};
 use piaffe_codegen::mechanism::{Family, Lever, Mechanism, levers, parameters};
-use piaffe_codegen::spec::{Gait, RobotFile, parse_gait, parse_robot};
+use piaffe_codegen::spec::{Gait, Robot, RobotFile, parse_gait, parse_robot};
+use piaffe_codegen::{RobotFiles, SpecFile};
 
 #[test]
 fn slopes_of_masses_and_lengths_are_those_of_unit_robots() {
@@ -14,10 +15,18 @@ fn slopes_of_masses_and_lengths_are_those_of_unit_robots() {
         let family = Family::new(&robot, &gait, parameters(&robot)).unwrap();
         let levers = levers(&robot, &gait);
         for (parameter, slopes) in family.parameters.iter().zip(&family.slopes) {
-            let found = levers.iter().find(|l| l.numbers.contains(&parameter.name));
+            // A family has mounts that are as far out as one.
+            let mounts = parameter.name.rsplit_once(".mount.").map(|(_, axis)| format!(".mount.{axis}"));
+            let as_far =
+                |l: &&Lever| l.value.abs() == parameter.value.abs() && mounts.iter().any(|axis| l.name.ends_with(axis));
+            let found: Vec<&Lever> =
+                levers.iter().filter(|l| l.numbers.contains(&parameter.name) || as_far(l)).collect();
             for (number, expected) in slopes.iter().enumerate() {
-                let slopes = found.iter().flat_map(|l| &l.slopes);
-                let slope = slopes.filter(|s| s.0 == number).map(|s| s.1).sum::<f64>();
+                let slope = |l: &&Lever| {
+                    let own = l.slopes.iter().filter(|s| s.0 == number).map(|s| s.1).sum::<f64>();
+                    if l.value * parameter.value < 0.0 { -own } else { own }
+                };
+                let slope = found.iter().map(slope).sum::<f64>();
                 let near = (slope - expected).abs() <= 1e-9 * expected.abs();
                 assert!(near, "{key} {} {number}: {slope} {expected}", parameter.name);
             }
@@ -148,11 +157,13 @@ fn numbers_that_must_stay_alike_change_together() {
     let trot = every_lever_keeps_the_gait(&robot("a1/bound"), TROT_OF_A1);
     let named = |levers: &[Lever], name: &str| levers.iter().any(|l| l.name == name);
     // A bound's hind legs are alike, and its fore legs; a trot's are all of one build.
-    for name in ["links.{RR,RL}_calf.length", "links.{FR,FL}_calf.length", "joints.{RR,RL}_calf_joint.range.lower"] {
+    for name in ["links.{RR,RL}_calf.length.y", "links.{FR,FL}_calf.length.y", "joints.{RR,RL}_calf_joint.range.lower"]
+    {
         assert!(named(&bound, name) && !named(&trot, name), "{name}");
     }
     for name in [
-        "links.{FR,FL,RR,RL}_calf.length",
+        "links.{FR,FL,RR,RL}_calf.length.y",
+        "links.{FR,FL,RR,RL}_calf.length.z",
         "links.{FR,FL,RR,RL}_thigh.com.x",
         "legs.{FR,FL,RR,RL}.mount.x",
         "actuators.motor.max_torque",
@@ -187,4 +198,128 @@ half_step_duration = [0.05, 2.0]
     let upper = ["FL", "RL"].map(|leg| format!("joints.{leg}_hip_joint.range.upper"));
     let lower = ["FR", "RR"].map(|leg| format!("joints.{leg}_hip_joint.range.lower"));
     assert_eq!(numbers, [&upper[0], &lower[0], &upper[1], &lower[1]]);
+}
+
+/// A robot of which no number is shipped.
+fn heron() -> RobotFiles {
+    RobotFiles::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/sensitivity/heron").as_ref()).unwrap()
+}
+
+/// The robots of all tests here, with one gait each.
+fn all_files() -> Vec<RobotFiles> {
+    let mut all: Vec<RobotFiles> = GAITS
+        .iter()
+        .map(|key| {
+            let (module, robot, gait) = files(key);
+            RobotFiles { module: module.into(), robot, gaits: vec![gait] }
+        })
+        .collect();
+    let a1 = files("a1/bound").1;
+    all.push(RobotFiles {
+        module: "a1".into(),
+        robot: a1,
+        gaits: vec![SpecFile { path: "trot.toml".into(), text: TROT_OF_A1.into() }],
+    });
+    let kitten = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/report/kitten");
+    all.push(RobotFiles::read(kitten.as_ref()).unwrap());
+    all.push(heron());
+    all
+}
+
+fn described(files: &RobotFiles) -> Option<(Robot, Gait)> {
+    let robot = parse_robot("robot.toml", &files.robot.text).ok()?;
+    let gait = parse_gait("gait.toml", &files.gaits[0].text, &robot).ok()?;
+    Some((robot.robot, gait))
+}
+
+/// Whoever sets what a slope is called gets what the slope says.
+#[test]
+fn names_are_those_by_which_numbers_are_set() {
+    let numbers = |files: &RobotFiles| {
+        let (robot, gait) = described(files)?;
+        let mechanism = Mechanism::new(&robot.locked(&gait.locked).ok()?, &gait);
+        Some([mechanism.numbers(), mechanism.limiting_numbers()].concat())
+    };
+    let mut compared = 0;
+    for files in all_files() {
+        let (robot, gait) = described(&files).unwrap();
+        let before = numbers(&files).unwrap();
+        let sizes = Mechanism::new(&robot.locked(&gait.locked).unwrap(), &gait).sizes();
+        for lever in levers(&robot, &gait) {
+            let name = format!("{} {}", files.module, lever.name);
+            let known = files.number(&lever.name);
+            assert!(
+                known == Some(lever.value) || (known, lever.value) == (None, 0.0),
+                "{name}: {known:?} {}",
+                lever.value
+            );
+            assert!(lever.numbers.iter().all(|one| files.number(one).is_some() || lever.value == 0.0), "{name}");
+            if lever.value == 0.0 && lever.numbers.len() > 1 {
+                continue; // On either side to its own.
+            }
+            // What is none is changed by little beside a small robot; stops and forces by little beside 1.
+            let step = match lever.unit {
+                "m" | "kg" => 1e-6,
+                "kg·m²" => 1e-11,
+                _ => 1e-6,
+            };
+            let by = if lever.value == 0.0 { step } else { 1e-5 * lever.value };
+            let moved = |by: f64| {
+                let mut changed = files.clone();
+                changed.set(&lever.name, lever.value + by).unwrap();
+                numbers(&changed)
+            };
+            // Beyond zero, or beyond what a rigid body can be, there is none.
+            let (above, below) = (moved(by), moved(-by));
+            let (after, before, apart) = match (above, below) {
+                (Some(above), Some(below)) => (above, below, 2.0 * by),
+                (Some(above), None) => (above, before.clone(), by),
+                (None, Some(below)) => (before.clone(), below, by),
+                (None, None) => continue,
+            };
+            for (number, (before, after)) in before.iter().zip(after).enumerate() {
+                let slope = lever.slopes.iter().filter(|s| s.0 == number).map(|s| s.1).sum::<f64>();
+                let error = (after - before - slope * apart).abs();
+                // Sums of numbers of the robot's size.
+                let rounding = 2e-14 * sizes.get(number).map_or(before.abs(), |size| size.abs());
+                assert!(error <= 2e-3 * (slope * apart).abs() + rounding, "{name} {number}: {before} {after} {slope}");
+            }
+            compared += 1;
+        }
+    }
+    assert!(compared > 300, "{compared}");
+}
+
+/// Every number that stands in the file, but for those that have no part in the gait and coulomb friction that is none.
+#[test]
+fn feet_and_zeros_have_slopes() {
+    let (robot, gait) = described(&heron()).unwrap();
+    let levers = levers(&robot, &gait);
+    let value = |name: &str| levers.iter().find(|l| l.numbers.iter().any(|n| n == name)).map(|l| l.value);
+    for (name, expected) in [
+        ("links.meta.mass", 0.0008),
+        ("links.meta.foot_mass", 0.0003),
+        ("links.meta.length.x", 0.001),
+        ("links.meta.com.x", 0.0),
+        ("links.tibia.foot_mass", 0.0),
+        ("links.tibia.com", 0.0),
+        ("links.body.extent.centre.x", 0.0),
+        ("legs.left.mount.x", 0.0),
+        ("legs.right.mount.y", 0.0),
+        ("joints.hip.damping", 0.0),
+        ("actuators.m.rotor_inertia", 0.0),
+    ] {
+        assert_eq!(value(name), Some(expected), "{name}: {:?}", levers.iter().map(|l| &l.name).collect::<Vec<_>>());
+    }
+    for name in ["links.meta.length", "joints.hock.coulomb", "joints.knee.damping", "links.femur.foot_mass"] {
+        assert_eq!(value(name), None, "{name}");
+    }
+}
+
+/// Fore and hind legs of a bound are as far out, and two things.
+#[test]
+fn what_is_equal_by_chance_is_not_one() {
+    let bound = every_lever_keeps_the_gait(&robot("a1/bound"), &files("a1/bound").2.text);
+    let mounts: Vec<&str> = bound.iter().map(|l| l.name.as_str()).filter(|name| name.contains("mount.x")).collect();
+    assert_eq!(mounts, ["legs.{FR,FL}.mount.x", "legs.{RR,RL}.mount.x"]);
 }

@@ -45,6 +45,12 @@ fn slopes_are_those_of_optima_of_other_robots() {
             // Numbers that change together, such as mounts at the same distance, are one parameter of the family.
             let changed = family.parameters.iter().map(|p| p.name.to_string()).filter(|name| numbers.contains(name));
             let (mut names, mut slope) = (changed.collect::<Vec<_>>(), *slope);
+            let mounts = parameter.rsplit_once(".mount.").map(|(_, axis)| format!(".mount.{axis}"));
+            for other in slopes.iter().filter(|s| s.parameter != *parameter) {
+                if other.value.abs() == value.abs() && mounts.iter().any(|axis| other.parameter.ends_with(axis)) {
+                    slope += other.slope * (other.value * value).signum();
+                }
+            }
             if names.is_empty() {
                 continue;
             }

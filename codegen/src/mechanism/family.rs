@@ -24,12 +24,12 @@ impl Family {
     /// The family of `robot` in `chosen` parameters.
     ///
     /// # Errors
-    /// If the mechanism is not affine in them: where a virtual leg or a locked joint makes one body of several.
+    /// If the mechanism is not affine in them: where a virtual leg, a locked joint or a foot makes one body of several.
     pub fn new(robot: &Robot, gait: &Gait, chosen: Vec<Parameter>) -> Result<Family, String> {
         let not_affine = || {
             format!(
                 "the {} joins links with parameters of their own into one body or leg: a family needs legs that move as one to \
-                 share their links, and no locked joints between links whose numbers are parameters",
+                 share their links, and no locked joints between links, nor feet of some mass on links, whose numbers are parameters",
                 gait.name
             )
         };

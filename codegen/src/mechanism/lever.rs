@@ -3,7 +3,7 @@
 //!
 //! Legs that a gait moves as one, or that mirror each other in it, must stay alike: a calf that is longer than the other three
 //! makes no robot that can walk so. So the numbers that these legs have in the same place are one lever ([`Lever::numbers`]), which
-//! changes all of them by the same share; numbers that are zero, by as much.
+//! changes all of them by the same share; those of them that are zero are another one, which changes them by as much.
 //!
 //! Where virtual legs share their links the mechanism's numbers are affine in the robot's, but a gear enters squared,
 //! and links that a locked joint joins have a common mass centre. So slopes are taken at the specification's values,
@@ -12,6 +12,7 @@
 use super::parameter::{Place, Sign};
 use super::{Actuated, Mechanism, parameter};
 use crate::spec::{Axis, Gait, Leg, Robot, Rotation, Then};
+use std::collections::BTreeSet;
 use std::fmt::Arguments;
 
 /// Numbers of the specification that change together.
@@ -22,7 +23,7 @@ pub struct Lever {
     /// Each of them.
     pub numbers: Vec<String>,
     pub unit: &'static str,
-    /// Of the first that is not zero.
+    /// Of the first.
     pub value: f64,
     /// Which of the mechanism's numbers depend on it ([`Mechanism::numbers`], then [`Mechanism::limiting_numbers`]), and how much.
     pub slopes: Vec<(usize, f64)>,
@@ -34,9 +35,9 @@ const STEP: f64 = 1.0 / 1024.0;
 /// A number that changes by less than this share of its natural size, when a value doubles, has cancelled to rounding.
 const CANCELLED: f64 = 1e-11;
 
-/// A number of the specification; mounts that are as far out are one.
+/// A number of the specification.
 struct Number {
-    names: Vec<String>,
+    name: String,
     unit: &'static str,
     value: f64,
 }
@@ -45,14 +46,22 @@ struct Number {
 pub fn levers(robot: &Robot, gait: &Gait) -> Vec<Lever> {
     let numbers = numbers(robot, gait);
     let lever = |group: Vec<&Number>| {
-        let first = group.iter().find(|number| number.value != 0.0).or(group.first())?;
-        let names: Vec<String> = group.iter().flat_map(|number| number.names.iter().cloned()).collect();
+        let first = group.first()?;
+        let names: Vec<String> = group.iter().map(|number| number.name.clone()).collect();
         let mut lever =
             Lever { name: braced(&names), numbers: names, unit: first.unit, value: first.value, slopes: Vec::new() };
         lever.slopes = lever.slopes(robot, gait)?;
         (!lever.slopes.is_empty()).then_some(lever)
     };
-    tied(&numbers, robot, gait).into_iter().filter_map(lever).collect()
+    let centre = format!("links.{}.com.z", robot.platform.name);
+    let in_the_middle = |number: &&Number| number.name == centre || number.name.ends_with(".mount.z");
+    let groups = tied(&numbers, robot, gait).into_iter().flat_map(|group| {
+        let (some, zero): (Vec<_>, Vec<_>) = group.into_iter().partition(|number| number.value != 0.0);
+        // What is in the middle between mirror images stays there.
+        let stays = !some.is_empty() && zero.iter().any(in_the_middle);
+        [some, if stays { Vec::new() } else { zero }]
+    });
+    groups.filter_map(lever).collect()
 }
 
 impl Lever {
@@ -61,7 +70,7 @@ impl Lever {
         let sides = Sides::new(robot);
         let (mut robot, mut gait) = (robot.clone(), gait.clone());
         places(&mut robot, &mut gait, |place| {
-            let own = place.own.to_string();
+            let own = place.name.to_string();
             if self.numbers.contains(&own) {
                 let value = place.value();
                 let change = if self.value == 0.0 {
@@ -86,6 +95,8 @@ impl Lever {
         // A step from zero is one of the robot's size.
         let natural = match self.unit {
             "m" => length,
+            // A foot's, beside which its link must not weigh nothing.
+            "kg" => lightest(robot),
             "kg·m²" => mass * length * length,
             "N" => mass * mechanism.gravity,
             _ => 1.0,
@@ -104,24 +115,29 @@ impl Lever {
     }
 }
 
-/// All numbers of a specification.
+/// The mass of the lightest link of a leg, kg.
+fn lightest(robot: &Robot) -> f64 {
+    let links = robot.legs.iter().flat_map(|leg| &leg.chain).map(|segment| segment.link.mass);
+    links.fold(f64::INFINITY, f64::min)
+}
+
+/// All numbers of a specification that are not zero, those that are written there as zeros, and limits.
 fn numbers(robot: &Robot, gait: &Gait) -> Vec<Number> {
-    let mut named: Vec<(String, Number)> = Vec::new();
+    let (mut numbers, mut known) = (Vec::new(), BTreeSet::new());
     places(&mut robot.clone(), &mut gait.clone(), |place| {
-        let (name, own) = (place.name.to_string(), place.own.to_string());
-        match named.iter_mut().find(|known| known.0 == name) {
-            None => named.push((name, Number { names: vec![own], unit: place.unit, value: place.value() })),
-            Some((_, number)) if !number.names.contains(&own) => number.names.push(own),
-            Some(_) => {}
+        let name = place.name.to_string();
+        let stands = place.value() != 0.0 || robot.written.contains(&name) || name.starts_with("limits.");
+        if stands && known.insert(name.clone()) {
+            numbers.push(Number { name, unit: place.unit, value: place.value() });
         }
     });
-    named.into_iter().map(|(_, number)| number).collect()
+    numbers
 }
 
 /// The numbers in groups that stay alike, in the order of their first ones.
 fn tied<'n>(numbers: &'n [Number], robot: &Robot, gait: &Gait) -> Vec<Vec<&'n Number>> {
     let mut group: Vec<usize> = (0..numbers.len()).collect();
-    let find = |name: &str| numbers.iter().position(|number| number.names.iter().any(|own| own == name));
+    let find = |name: &str| numbers.iter().position(|number| number.name == name);
     let mut tie = |a: &str, b: &str| {
         if let (Some(a), Some(b)) = (find(a), find(b)) {
             let (first, second) = (group[a].min(group[b]), group[a].max(group[b]));
@@ -130,7 +146,7 @@ fn tied<'n>(numbers: &'n [Number], robot: &Robot, gait: &Gait) -> Vec<Vec<&'n Nu
     };
     let mut tie_tables = |a: String, b: String| {
         for number in numbers {
-            for rest in number.names.iter().filter_map(|name| name.strip_prefix(a.as_str())) {
+            if let Some(rest) = number.name.strip_prefix(a.as_str()) {
                 tie(&format!("{a}{rest}"), &format!("{b}{rest}"));
             }
         }
@@ -191,9 +207,10 @@ impl Sides {
         Sides(robot.legs.iter().flat_map(of_leg).collect())
     }
 
-    /// −1 for what is on the left and changes its sign with the side: places across, and stops of joints that do not pitch.
+    /// −1 for what is on the left and changes its sign with the side: places across, products with these, and stops of joints that
+    /// do not pitch.
     fn of(&self, name: &str) -> f64 {
-        let changes = name.ends_with(".z") || name.starts_with("joints.");
+        let changes = [".z", ".yz", ".zx"].iter().any(|end| name.ends_with(end)) || name.starts_with("joints.");
         let table = self.0.iter().find(|(table, _)| name.starts_with(table.as_str()));
         table.filter(|_| changes).map_or(1.0, |(_, side)| *side)
     }
@@ -257,18 +274,17 @@ impl Mechanism {
 fn places(robot: &mut Robot, gait: &mut Gait, mut visit: impl FnMut(Place)) {
     parameter::places(robot, &mut visit);
     let mut add = |name: Arguments, unit, number: &mut f64| {
-        visit(Place { name, own: name, unit, sign: Sign::Any, negative: false, number });
+        visit(Place::new(name, unit, Sign::Any, false, number));
     };
     for segment in robot.legs.iter_mut().flat_map(|leg| &mut leg.chain) {
         let joint = &mut segment.joint;
         let ([lower, upper], name) = (&mut joint.range, &joint.name);
         add(format_args!("joints.{name}.range.lower"), "rad", lower);
         add(format_args!("joints.{name}.range.upper"), "rad", upper);
-        // A joint without friction has none to change.
-        let of_friction =
-            [("damping", "N·m·s/rad", &mut joint.friction.damping), ("coulomb", "N·m", &mut joint.friction.coulomb)];
-        for (key, unit, number) in of_friction.into_iter().filter(|(_, _, number)| **number != 0.0) {
-            add(format_args!("joints.{name}.{key}"), unit, number);
+        add(format_args!("joints.{name}.damping"), "N·m·s/rad", &mut joint.friction.damping);
+        // Where a joint has no dry friction, the program does not ask which way it turns.
+        if joint.friction.coulomb != 0.0 {
+            add(format_args!("joints.{name}.coulomb"), "N·m", &mut joint.friction.coulomb);
         }
         let motor = &mut joint.actuator;
         let name = &motor.name;

@@ -87,16 +87,16 @@ pub(super) fn chain(leg: &Leg, mount: [f64; 3], first_body: usize, first_joint: 
     let mut offset = mount;
     let bodies = leg.chain.iter().enumerate().map(|(i, Segment { joint, link })| {
         let parent = if i == 0 { 0 } else { first_body + i - 1 };
-        let at = std::mem::replace(&mut offset, link.end);
+        let (at, body) = (std::mem::replace(&mut offset, link.end), link.rigid());
         Body {
             name: link.name.clone(),
             parent: Some(parent),
             coordinate: Some(first_joint + i),
             axis: joint.axis,
             offset: at,
-            mass: link.mass,
-            com: link.com,
-            inertia: link.inertia,
+            mass: body.mass,
+            com: body.com,
+            inertia: body.inertia,
         }
     });
     (bodies.collect(), offset)

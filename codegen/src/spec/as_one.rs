@@ -283,7 +283,7 @@ mod tests {
                 actuator,
             };
             let (name, inertia) = ("link".into(), [[0.0; 3]; 3]);
-            let link = Link { name, mass: 1.0, end: *end, com: [0.0; 3], inertia, locked: Vec::new() };
+            let link = Link { name, mass: 1.0, end: *end, com: [0.0; 3], inertia, foot_mass: 0.0, locked: Vec::new() };
             Segment { joint, link }
         };
         let chain = axes.iter().zip(ends).map(segment).collect();
@@ -377,7 +377,7 @@ mod tests {
         };
         let mut legs = vec![a];
         legs.extend(b);
-        let mut robot = Robot { name: "robot".into(), gravity: 9.81, platform, legs };
+        let mut robot = Robot { name: "robot".into(), gravity: 9.81, platform, legs, written: Default::default() };
         let virtual_legs = [vec![0], vec![1, 2]];
         assert!(robot.exchange(&virtual_legs, Rotation::None).is_none());
         // Where the platform rolls, the halves resist more than what is in one place.

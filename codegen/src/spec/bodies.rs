@@ -27,15 +27,14 @@ pub(super) fn link(name: &str, view: &View<'_>, sink: &mut Sink) -> Option<Link>
     let end = view.along("length", sink);
     let com = view.along("com", sink);
     let inertia = inertia(view, ["lateral", "axial", "swing"], sink);
-    let foot = if view.has("foot_mass") { view.number("foot_mass", sink)?.value } else { 0.0 };
-    let end = end?;
-    let body = Rigid { mass: mass?.value, com: com?, inertia: inertia? }.with(&Rigid::point(foot, end));
+    let foot_mass = if view.has("foot_mass") { view.number("foot_mass", sink)?.value } else { 0.0 };
     Some(Link {
         name: name.to_string(),
-        mass: body.mass,
-        end,
-        com: body.com,
-        inertia: body.inertia,
+        mass: mass?.value,
+        end: end?,
+        com: com?,
+        inertia: inertia?,
+        foot_mass,
         locked: Vec::new(),
     })
 }

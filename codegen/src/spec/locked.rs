@@ -30,7 +30,8 @@ impl Robot {
         for leg in &self.legs {
             legs.push(lock(leg, angles, &mut platform)?);
         }
-        Ok(Robot { name: self.name.clone(), gravity: self.gravity, platform, legs })
+        let written = self.written.clone();
+        Ok(Robot { name: self.name.clone(), gravity: self.gravity, platform, legs, written })
     }
 }
 
@@ -85,13 +86,15 @@ fn carried_axis(rotation: &Rotation3, axis: Axis) -> Option<Axis> {
 }
 
 impl Link {
+    /// With its foot.
     pub(crate) fn rigid(&self) -> Rigid {
-        Rigid { mass: self.mass, com: self.com, inertia: self.inertia }
+        let own = Rigid { mass: self.mass, com: self.com, inertia: self.inertia };
+        own.with(&Rigid::point(self.foot_mass, self.end))
     }
 
-    /// Gives the link this mass, mass centre and inertia.
+    /// Gives the link this mass, mass centre and inertia, its foot included.
     pub(crate) fn put(&mut self, body: &Rigid) {
-        (self.mass, self.com, self.inertia) = (body.mass, body.com, body.inertia);
+        (self.mass, self.com, self.inertia, self.foot_mass) = (body.mass, body.com, body.inertia, 0.0);
     }
 }
 

@@ -6,7 +6,7 @@ use super::as_one::Unlike;
 use super::diagnostic::Sink;
 use super::format::DIRECTIONS;
 use super::gait::RawGait;
-use super::pairing::place;
+use super::pairing::{self, place};
 use super::phases::Written;
 use super::robot::RobotFile;
 use super::types::Then;
@@ -20,12 +20,14 @@ pub(super) fn check(raw: &RawGait, legs: &[Vec<usize>; 2], robot: &RobotFile, si
     let (Some(&second), Then::Mirrored) = (legs[1].first(), then.value) else {
         return;
     };
+    let mut mounts = "their mounts".to_string();
     let (why, label) = match robot.robot.exchange(legs, rotation.value) {
         None => return,
         Some(Unlike::Link(why)) => (why, place(robot, second, |p| &p.name, "a leg of virtual leg 2")),
         Some(Unlike::Mount(k)) => {
             let [a, b] = [0, 1].map(|leg| robot.robot.hip(&legs[leg])[k]);
             let at = DIRECTIONS[k];
+            mounts += &format!(" ({})", pairing::mounts(legs.iter().flatten().map(|leg| &robot.robot.legs[*leg]), k));
             let why =
                 format!("the hips of the virtual legs are at {at} = {a:.4} and {at} = {b:.4} from the mass centre");
             (why, place(robot, second, |p| &p.mount, "a mount of virtual leg 2"))
@@ -36,7 +38,7 @@ pub(super) fn check(raw: &RawGait, legs: &[Vec<usize>; 2], robot: &RobotFile, si
         Written::List(_) => ("halves of the cycle", "then = \"repeat\", with phases on both legs"),
     };
     let title = format!("the {halves} cannot mirror each other: {why}");
-    let help = format!("write {instead}, choose other virtual legs, or correct their mounts");
+    let help = format!("write {instead}, choose other virtual legs, or correct {mounts}");
     sink.report(Code::NotMirrored, title, &then.span, "the virtual legs exchange their roles", help);
     sink.beside(label);
 }

@@ -142,12 +142,20 @@ fn check_pair(raw: &RawGait, list: &Names, legs: &[usize], robot: &RobotFile, si
                 }
                 Rotation::None => "pair legs that are mounted at the same height (the same y)",
             };
+            let together = mounts([lead, leg].iter().map(|leg| &all[*leg]), k);
+            let help = format!("{help}; or give both the same {together}");
             sink.report(Code::LegsDoNotPair, title, &name.span, label, help);
             sink.beside(place(robot, leg, |p| &p.mount, &format!("mount of `{}`", all[leg].name)));
             good = false;
         }
     }
     good
+}
+
+/// One name for a place of several legs' mounts, as `--set` takes it.
+pub(super) fn mounts<'l>(legs: impl Iterator<Item = &'l Leg>, along: usize) -> String {
+    let names: Vec<&str> = legs.map(|leg| leg.name.as_str()).collect();
+    format!("legs.{{{}}}.mount.{}", names.join(","), DIRECTIONS[along])
 }
 
 /// Names of a leg's joints.

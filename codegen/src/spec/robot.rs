@@ -6,9 +6,11 @@ use super::diagnostic::{At, Diagnostic, Label, Sink, Source, Span};
 use super::format;
 use super::keys::Table;
 use super::name;
+use super::set::numbers;
 use super::syntax;
 use super::types::{Axis, Friction, Link, Platform, Robot};
 use super::view::View;
+use std::sync::Arc;
 
 /// A validated robot, and where its parts stand in its file, so that a gait that contradicts it can point there.
 #[derive(Clone, Debug)]
@@ -67,7 +69,8 @@ fn read(text: &str, sink: &mut Sink) -> Option<(Robot, Vec<LegPlaces>, Axes)> {
     let parts = parts(&root, sink);
     let axes = parts.joints.iter().map(|j| (j.name.value.clone(), j.axis.span.clone())).collect();
     let (platform, legs, places) = chain::assemble(parts, sink)?;
-    Some((Robot { name: name?, gravity: gravity?.value, platform, legs }, places, axes))
+    let written = Arc::new(numbers(text).into_iter().map(|number| number.name).collect());
+    Some((Robot { name: name?, gravity: gravity?.value, platform, legs, written }, places, axes))
 }
 
 /// All named tables; `None` stands for one with mistakes, so that references to it still resolve.

@@ -1,7 +1,7 @@
 //! Numbers of a specification changed where they stand, so that the files that come of it say all.
 //!
 //! Their names are the keys that lead to them, as in `links.thigh.mass`; of a list's elements those that say what they are:
-//! `legs.fore_left.mount.x`, `joints.knee.range.lower`, `phases.1.duration.shortest`. Places of legs' mounts at the same distance to either side stay so.
+//! `legs.fore_left.mount.x`, `joints.knee.range.lower`, `phases.1.duration.shortest`.
 
 use super::format::may_be_absent;
 use super::nearest::nearest;
@@ -18,26 +18,20 @@ pub struct Number {
 /// The text of a file with another number in it, where one stands or where one may be absent; `None` if no number there is called
 /// like this.
 pub fn set(text: &str, name: &str, value: f64) -> Option<String> {
-    let (text, known) = set_all(text, &[(name, value)]).ok()?;
+    let (text, known) = set_all(text, &[(name, value)]);
     known[0].then_some(text)
 }
 
 /// The same with several numbers at once, whatever their order, and which of them the file has.
-///
-/// # Errors
-/// If a number that is not among them would have to stay like two that go apart.
-pub fn set_all(text: &str, wanted: &[(&str, f64)]) -> Result<(String, Vec<bool>), String> {
-    let numbers = numbers(text);
-    let old = |name: &str| numbers.iter().find(|number| number.name == name).map(|number| number.value);
-    let known: Vec<Option<f64>> = wanted.iter().map(|(name, _)| old(name)).collect();
-    let mut changed = text.to_string();
+pub fn set_all(text: &str, wanted: &[(&str, f64)]) -> (String, Vec<bool>) {
+    let (mut changed, mut have) = (text.to_string(), vec![false; wanted.len()]);
     // From behind: what is before stays where it is.
-    for number in numbers.iter().rev() {
-        if let Some(value) = wanted_of(number, wanted, &known)? {
-            changed.replace_range(number.span.clone(), &written(value));
+    for number in numbers(text).iter().rev() {
+        if let Some(k) = wanted.iter().position(|(name, _)| *name == number.name) {
+            changed.replace_range(number.span.clone(), &written(wanted[k].1));
+            have[k] = true;
         }
     }
-    let mut have: Vec<bool> = known.iter().map(Option::is_some).collect();
     for ((name, value), has) in wanted.iter().zip(&mut have) {
         if !*has
             && may_be_absent(name)
@@ -46,27 +40,7 @@ pub fn set_all(text: &str, wanted: &[(&str, f64)]) -> Result<(String, Vec<bool>)
             (changed, *has) = (with, true);
         }
     }
-    Ok((changed, have))
-}
-
-/// What a number becomes: what is wanted of it, or else of those that it stays like.
-fn wanted_of(number: &Number, wanted: &[(&str, f64)], old: &[Option<f64>]) -> Result<Option<f64>, String> {
-    if let Some((_, value)) = wanted.iter().find(|(name, _)| *name == number.name) {
-        return Ok(Some(*value));
-    }
-    let mut follows: Option<(&str, f64)> = None;
-    for ((name, value), old) in wanted.iter().zip(old) {
-        let Some(sign) = old.and_then(|old| tied(name, old, number)) else { continue };
-        let value = sign * value;
-        match follows {
-            Some((other, first)) if first != value => {
-                let own = &number.name;
-                return Err(format!("`{own}` stays like `{other}` and like `{name}`, which go apart: give it too"));
-            }
-            _ => follows = Some((name, value)),
-        }
-    }
-    Ok(follows.map(|(_, value)| value))
+    (changed, have)
 }
 
 /// The text of a file with a key that it lacks, before the first key of its table; `None` if there is no such table.
@@ -101,14 +75,6 @@ pub fn alternatives(name: &str) -> Vec<String> {
     let Some((inside, after)) = rest.split_once('}') else { return vec![name.into()] };
     let with = |part: &str| alternatives(&format!("{before}{}{after}", part.trim()));
     inside.split(',').flat_map(with).collect()
-}
-
-/// The sign with which a number stays like another one of this name and value, if it does.
-fn tied(name: &str, value: f64, number: &Number) -> Option<f64> {
-    let axis = |name: &str| name.strip_prefix("legs.").and_then(|rest| Some(rest.split_once(".mount.")?.1.to_string()));
-    let both_mounts = axis(name).is_some() && axis(name) == axis(&number.name);
-    let alike = both_mounts && value != 0.0 && number.value.abs() == value.abs();
-    alike.then(|| number.value.signum() * value.signum())
 }
 
 /// What to say where no file has a number of this name.
@@ -255,11 +221,9 @@ mod tests {
     }
 
     #[test]
-    fn mounts_on_either_side_stay_alike() {
+    fn who_is_not_named_stays() {
         let changed = set(ROBOT, "legs.b.mount.z", 0.125).unwrap();
-        assert_eq!(changed, ROBOT.replace("0.15]", "0.125]"));
-        let changed = set(ROBOT, "legs.a.mount.y", 0.125).unwrap();
-        assert_eq!(changed, ROBOT.replacen("0.2, 0.0,", "0.2, 0.125,", 1), "what is zero is nobody else's");
+        assert_eq!(changed, ROBOT.replace(", 0.15]", ", 0.125]"), "the other one is as far out");
     }
 
     #[test]
@@ -270,13 +234,10 @@ mod tests {
         let mut back = both;
         back.reverse();
         for wanted in [both, back] {
-            assert_eq!(set_all(ROBOT, &wanted).unwrap(), (expected.clone(), vec![true; 3]));
+            assert_eq!(set_all(ROBOT, &wanted), (expected.clone(), vec![true; 3]));
         }
-        let (text, known) = set_all(ROBOT, &[("gravity", 1.62), ("links.tail.mass", 1.0)]).unwrap();
+        let (text, known) = set_all(ROBOT, &[("gravity", 1.62), ("links.tail.mass", 1.0)]);
         assert_eq!((text, known), (ROBOT.replace("9.81", "1.62"), vec![true, false]));
-        let third = format!("{ROBOT}[legs.c]\nmount = [0, 0, 0.15]\n");
-        let why = set_all(&third, &both).unwrap_err();
-        assert!(why.contains("`legs.c.mount.z` stays like `legs.a.mount.z` and like `legs.b.mount.z`"), "{why}");
     }
 
     #[test]

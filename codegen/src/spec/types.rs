@@ -3,6 +3,9 @@
 //! Frames: body axes x forward, y up, z to the right, the same for all bodies where all joints are at zero.
 //! SI units, except motor speeds (rev/min), which is how data sheets state them.
 
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
 /// The real robot: a platform and its legs, in real-leg values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Robot {
@@ -11,6 +14,8 @@ pub struct Robot {
     pub gravity: f64,
     pub platform: Platform,
     pub legs: Vec<Leg>,
+    /// Names of the numbers that its file has: how a length is written, and which zeros.
+    pub written: Arc<BTreeSet<String>>,
 }
 
 /// The platform (trunk). The gaits' coordinates `p` are those of its mass centre.
@@ -117,6 +122,7 @@ impl Axis {
     }
 }
 
+/// A link of a leg without its foot, which is a point at its end: [`Link::rigid`] has both.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link {
     pub name: String,
@@ -127,6 +133,8 @@ pub struct Link {
     pub com: [f64; 3],
     /// About the mass centre, in link axes.
     pub inertia: Inertia,
+    /// Of the foot, kg.
+    pub foot_mass: f64,
     /// Joints that a gait holds still, so that what they carried is part of this link.
     pub locked: Vec<Locked>,
 }

@@ -4,9 +4,9 @@ use super::terms::{Term, gathered};
 use crate::dynamics::{Model, closed_forms};
 use crate::expr::{Kind, Monomial, Poly, Var};
 use crate::mechanism::{Actuated, Family, Mechanism, Parameter, parameters};
-use crate::spec::{Gait, Robot};
+use crate::spec::{Gait, Link, Robot};
 use std::cell::RefCell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
 /// Width of a line of an equation, in characters as set.
@@ -25,10 +25,15 @@ pub struct Notation<'m> {
     lumps: RefCell<Vec<Poly>>,
 }
 
-/// The document of one gait. Where the numbers of its `mechanism` are no sums of the robot's, they stand there as
-/// numbers.
+/// The document of one gait. Where the numbers of its `mechanism` are no sums of the robot's, as those of a link with its
+/// foot, they stand there as numbers.
 pub fn latex(robot: &Robot, gait: &Gait, mechanism: &Mechanism) -> String {
-    let family = Family::new(robot, gait, parameters(robot)).ok();
+    let with_foot = |link: &&Link| link.foot_mass != 0.0;
+    let links = robot.legs.iter().flat_map(|leg| &leg.chain).map(|segment| &segment.link).filter(with_foot);
+    let with_foot: BTreeSet<String> = links.map(|link| format!("links.{}.", link.name)).collect();
+    let mut chosen = parameters(robot);
+    chosen.retain(|p| !with_foot.iter().any(|link| p.name.starts_with(link)));
+    let family = Family::new(robot, gait, chosen).ok();
     let mut model = match &family {
         Some(family) => Model::of_family(family),
         None => Model::new(mechanism),

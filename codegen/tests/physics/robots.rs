@@ -130,6 +130,7 @@ fn leg(name: &str, mount: [f64; 3], axes: &[Axis], draws: &mut Draws, build: &Bu
                 end,
                 com,
                 inertia: inertia(draws, 0.01 * mass, build.crooked),
+                foot_mass: 0.0,
                 locked: Vec::new(),
             },
         }
@@ -169,7 +170,8 @@ pub fn specification(build: &Build, draws: &mut Draws) -> (Robot, Gait) {
             legs.push(next);
         }
     }
-    let robot = Robot { name: "random".into(), gravity: draws.between(1.0, 10.0), platform, legs };
+    let robot =
+        Robot { name: "random".into(), gravity: draws.between(1.0, 10.0), platform, legs, written: Default::default() };
     let unactuated = match build.rotation {
         Rotation::None => Unactuated::Joint { leg: 0, joint: 0 },
         _ => Unactuated::Platform,

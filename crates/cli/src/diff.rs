@@ -4,7 +4,7 @@ use super::digits::decimal;
 use super::{document, input, output};
 use piaffe_model::digits::digits;
 use piaffe_optimizer::result::GaitResult;
-use piaffe_study::difference::{Difference, Pair, Prediction};
+use piaffe_study::difference::{Changed, Difference, Pair, Prediction};
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -63,7 +63,7 @@ fn tell(names: &Pair<String>, results: &Pair<GaitResult>, d: &Difference) -> io:
         writeln!(out, "                something else than numbers differs between the specifications")?;
     }
     if let Some(prediction) = &d.prediction {
-        predicted(&mut out, prediction, results.a.criterion.unit())?;
+        predicted(&mut out, prediction, &d.numbers, results.a.criterion.unit())?;
     }
     let durations = |list: &[f64]| match list {
         [] => "none".into(),
@@ -91,7 +91,7 @@ fn tell(names: &Pair<String>, results: &Pair<GaitResult>, d: &Difference) -> io:
 }
 
 /// Which is better, and why.
-fn predicted(out: &mut impl Write, p: &Prediction, unit: &str) -> io::Result<()> {
+fn predicted(out: &mut impl Write, p: &Prediction, numbers: &[Changed], unit: &str) -> io::Result<()> {
     for (k, part) in p.parts.iter().enumerate() {
         let head = if k == 0 { "explained by" } else { "" };
         let (name, change) = (&part.parameter, decimal(part.change, 4));
@@ -105,9 +105,23 @@ fn predicted(out: &mut impl Write, p: &Prediction, unit: &str) -> io::Result<()>
         writeln!(out, "{:15} {sum} of {all} {unit}{share} to first order; {mean} with the slopes of both", "in all")?;
     }
     if !p.without_slope.is_empty() {
-        writeln!(out, "{:15} no slope is known in {}", "", p.without_slope.join(", "))?;
+        writeln!(out, "{:15} no slope is known in {}", "", without_slope(p, numbers).join(", "))?;
     }
     Ok(())
+}
+
+/// Numbers that differ and have no slope; friction that is none has none.
+fn without_slope(p: &Prediction, numbers: &[Changed]) -> Vec<String> {
+    let with_reason = |name: &String| {
+        let values = numbers.iter().find(|number| number.name == *name).map(|number| number.values);
+        let nothing = |value: Option<f64>| value.unwrap_or(0.0) == 0.0;
+        match values {
+            Some(Pair { a, .. }) if nothing(a) => format!("{name} (it is 0 in A)"),
+            Some(Pair { b, .. }) if nothing(b) => format!("{name} (it is 0 in B)"),
+            _ => name.clone(),
+        }
+    };
+    p.without_slope.iter().map(with_reason).collect()
 }
 
 fn signed(number: f64) -> String {

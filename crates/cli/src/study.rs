@@ -144,7 +144,7 @@ fn asked(arguments: Arguments, changes: &Changes) -> anyhow::Result<Study> {
 
 /// Numbers that are varied and changed for this run besides: of one of both nothing would be left.
 fn twice(study: &Study, changes: &Changes) -> Vec<String> {
-    let varied = study.designs.varied(&study.robot);
+    let varied = study.designs.varied();
     let changed = changes.names(study.robot.files());
     let both = changed.intersection(&varied);
     both.map(|name| {

@@ -4,14 +4,14 @@ use crate::row::{Beyond, Optimum, Outcome, Pushed, Row, Slopes};
 use crate::study::{FEW, Point, Study};
 use piaffe_interpreter::{Family, Interpreted, Robot, Unloadable};
 use piaffe_model::Gait;
-use piaffe_model::motion::{Criterion, Motion};
+use piaffe_model::motion::Motion;
 use piaffe_optimizer::altered::Altered;
 use piaffe_optimizer::constraints::sharing::applies;
 use piaffe_optimizer::finite::not_finite;
 use piaffe_optimizer::result::{GaitResult, Status};
 use piaffe_optimizer::search::local::Task;
 use piaffe_optimizer::search::multi_start::{Expected, Found, Settings, search_from};
-use piaffe_optimizer::sensitivity::sensitivities;
+use piaffe_optimizer::sensitivity::{Sensitivity, sensitivities};
 use piaffe_optimizer::stability::{PhaseTracking, stability};
 use piaffe_optimizer::verdict::Verdict;
 use rayon::prelude::*;
@@ -201,10 +201,7 @@ impl<'s> Answers<'s> {
             successes: effort.successes,
             optima: effort.optima,
             certificate: certificate.map(|certificate| certificate.standing),
-            slopes: self
-                .asked(Beyond::Slopes)
-                .then(|| self.slopes(point.criterion, point.speed, gait, motion))
-                .flatten(),
+            slopes: self.asked(Beyond::Slopes).then(|| self.slopes(point, gait, motion)).flatten(),
             stability: stability.map(|stability| Pushed {
                 by_clock: Some(stability.clock.factor).filter(|factor| factor.is_finite()),
                 by_phase: match stability.phase {
@@ -215,12 +212,12 @@ impl<'s> Answers<'s> {
         }
     }
 
-    fn slopes(&self, criterion: Criterion, speed: f64, gait: &dyn Gait, motion: &Motion) -> Option<Slopes> {
-        let all = sensitivities(gait, criterion, speed, motion).ok()?.slopes;
-        let of = |name: &str| all.iter().find(|slope| slope.numbers.iter().any(|number| number == name));
+    fn slopes(&self, point: &Point, gait: &dyn Gait, motion: &Motion) -> Option<Slopes> {
+        let all = sensitivities(gait, point.criterion, point.speed, motion).ok()?.slopes;
+        let names = self.study.designs.names().iter().zip(point.numbers);
         Some(Slopes {
-            speed: of("speed")?.slope,
-            numbers: self.study.designs.names().iter().map(|name| Some(of(&first(name))?.slope)).collect(),
+            speed: all.iter().find(|slope| slope.parameter == "speed")?.slope,
+            numbers: names.map(|(name, value)| slope_in(&all, name, *value)).collect(),
         })
     }
 
@@ -296,7 +293,13 @@ fn brief(why: &Unloadable) -> String {
     why.to_string().lines().next().unwrap_or_default().into()
 }
 
-/// The first of the names that one with braces stands for.
-fn first(name: &str) -> String {
-    piaffe_codegen::spec::alternatives(name).into_iter().next().unwrap_or_default()
+/// The slope in all numbers that a name with braces stands for, which have this value or minus it. None where one of them must stay
+/// like a number that is not among them.
+fn slope_in(all: &[Sensitivity], name: &str, value: f64) -> Option<f64> {
+    let names = piaffe_codegen::spec::alternatives(name);
+    let is_named = |number: &String| names.contains(number);
+    let of_these: Vec<_> = all.iter().filter(|slope| slope.numbers.iter().any(is_named)).collect();
+    let whole = !of_these.is_empty() && of_these.iter().all(|slope| slope.numbers.iter().all(is_named));
+    let towards = |slope: &Sensitivity| if slope.value * value < 0.0 { -slope.slope } else { slope.slope };
+    whole.then(|| of_these.into_iter().map(towards).sum())
 }

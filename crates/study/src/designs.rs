@@ -146,31 +146,14 @@ impl Designs {
                 }
             }
         }
-        faults.extend(self.probed(base).1);
+        // What is twice is told.
+        let singles = known.keys().map(|name| (name.as_str(), 1.0));
+        faults.extend(base.files().clone().set_all(singles).err().into_iter().flatten());
         faults
     }
 
-    /// Names of the base robot's numbers that are not the same in all designs, or need not be.
-    pub fn varied(&self, base: &Robot) -> BTreeSet<String> {
-        let before: BTreeMap<String, f64> = base.files().numbers().into_iter().collect();
-        // What is wrong with the names is told elsewhere.
-        let (after, _) = self.probed(base);
-        let changed = after.numbers().into_iter().filter(|(name, value)| before.get(name) != Some(value));
-        changed.map(|(name, _)| name).chain(self.singles()).collect()
-    }
-
-    /// The files in which each number that is varied is one that it was not and that no other is, and what is wrong with that.
-    fn probed(&self, base: &Robot) -> (RobotFiles, Vec<String>) {
-        let greatest = base.files().numbers().into_iter().map(|(_, value)| value.abs()).fold(0.0, f64::max);
-        let singles = self.singles();
-        let probes = singles.iter().enumerate().map(|(k, name)| (name.as_str(), greatest + (k + 1) as f64));
-        let mut files = base.files().clone();
-        let faults = files.set_all(probes).err().unwrap_or_default();
-        (files, faults)
-    }
-
-    /// Names of single numbers that are varied.
-    fn singles(&self) -> BTreeSet<String> {
+    /// Names of the numbers that are not the same in all designs, or need not be.
+    pub fn varied(&self) -> BTreeSet<String> {
         self.names.iter().flat_map(|name| spec::alternatives(name)).collect()
     }
 

@@ -105,7 +105,7 @@ impl Difference {
         let (numbers, other_specification) = specification(a, b);
         Difference {
             prediction: Prediction::new(a, b, &numbers),
-            specified: a.specification.is_some() && b.specification.is_some(),
+            specified: is_specified(a, b),
             numbers,
             other_specification,
             robot: pair(a, b, |r| r.robot.clone()),
@@ -121,6 +121,10 @@ impl Difference {
             verdicts: pair(a, b, Verdicts::of),
         }
     }
+}
+
+fn is_specified(a: &GaitResult, b: &GaitResult) -> bool {
+    a.specification.is_some() && b.specification.is_some()
 }
 
 fn pair<T>(a: &GaitResult, b: &GaitResult, of: impl Fn(&GaitResult) -> T) -> Pair<T> {
@@ -215,9 +219,18 @@ impl Prediction {
         if a.criterion != b.criterion || !known {
             return None;
         }
+        let specified = is_specified(a, b);
+        // Of numbers that stay alike, all change by the same share.
+        let together = |of_a: &Sensitivity, of_b: &Sensitivity| {
+            let share = |name: &String| {
+                let values = changed.iter().find(|number| number.name == *name)?.values;
+                Some((values.a? * of_b.value - values.b? * of_a.value).abs() <= 1e-9 * (of_a.value * of_b.value).abs())
+            };
+            !specified || of_a.parameter == "speed" || of_a.numbers.iter().all(|name| share(name) == Some(true))
+        };
         let part = |(a, b): (&Sensitivity, &Sensitivity)| {
             let change = b.value - a.value;
-            (change != 0.0).then(|| Part {
+            (change != 0.0 && together(a, b)).then(|| Part {
                 parameter: a.parameter.clone(),
                 unit: a.unit.clone(),
                 change,
@@ -229,7 +242,8 @@ impl Prediction {
         parts.sort_by(|a, b| b.at_a.abs().total_cmp(&a.at_a.abs()));
         let sum = |of: fn(&Part) -> f64| parts.iter().map(of).sum::<f64>();
         let (at_a, at_b) = (sum(|part| part.at_a), sum(|part| part.at_b));
-        let has_slope = |name: &str| both(a, b).any(|(slope, _)| slope.numbers.iter().any(|number| number == name));
+        let has_slope =
+            |name: &str| both(a, b).any(|(a, b)| a.numbers.iter().any(|number| number == name) && together(a, b));
         let without = changed.iter().filter(|number| !has_slope(&number.name));
         let without_slope = without.map(|number| number.name.clone()).collect();
         Some(Prediction { parts, at_a, at_b, mean: 0.5 * (at_a + at_b), difference, without_slope })

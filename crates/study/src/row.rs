@@ -104,7 +104,8 @@ pub struct Optimum {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Slopes {
     pub speed: f64,
-    /// Of each varied number, with those that must stay like it; none where the gait does not depend on it.
+    /// In each varied number, or in those that one name varies; none where the gait does not depend on it, or where it must stay
+    /// like others that this name does not vary.
     pub numbers: Vec<Option<f64>>,
 }
 
