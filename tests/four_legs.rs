@@ -12,7 +12,9 @@ use piaffe::constraints::sharing::BALANCED;
 use piaffe::cycle::{Cycle, theta};
 use piaffe::examine::Examination;
 use piaffe::export::{controller::controller, mjcf::mjcf, table::real_joints, urdf::urdf};
-use piaffe::four_legs::{Component, Equations, Instant, Legs, Lift, Limits, PLATFORM, RealLegs, Shares, Verdict, best};
+use piaffe::four_legs::{
+    Component, Equations, Instant, Legs, Lift, Limits, PLATFORM, RealLegs, Shares, Sharing, Verdict, best,
+};
 use piaffe::gaits::GAITS;
 use piaffe::model::Gait;
 use piaffe::motion::{Course, Criterion, Motion};
@@ -273,6 +275,8 @@ fn an_impact_may_pitch_the_robot_as_little_as_the_verdict_lets_pass() {
             let lacking = legs.best_shares.impact;
             assert_eq!(lacking.of, Component::PitchingMoment);
             assert!((pitched / lacking.share - 1.0).abs() < 1e-3 && pitched > 1e-4, "{pitched} {lacking:?}");
+            // Of an impact the moments between know nothing.
+            assert_eq!(legs.between_and_at_impacts()[1], pitched <= BALANCED, "{legs:?}");
             if real_legs {
                 assert_eq!(legs.verdict(), Verdict::UnequalShares);
                 assert!(!pitches_freely || (0.0..2e-6).contains(&(BALANCED - pitched)), "{pitched}");
@@ -333,7 +337,7 @@ fn the_command_writes_what_the_library_lifts() {
     let (result, motion) = optimum(gait, Criterion::Torque);
     let run =
         |format: &str| String::from_utf8(piaffe(&result, &["lift", "-", "--rate", "200", "--format", format])).unwrap();
-    let lift = Lift::at_rate(gait, &motion, 200.0).unwrap();
+    let lift = Lift::at_rate(gait, &motion, 200.0, Sharing::LeastCost(Criterion::Torque)).unwrap();
     let json: Value = serde_json::from_str(&run("json")).unwrap();
     let text = run("csv");
     let mut lines = text.lines();
@@ -354,6 +358,37 @@ fn the_command_writes_what_the_library_lifts() {
     assert_eq!(impulses.iter().filter(|i| **i != 0.0).count(), 1);
     assert_eq!(json["impacts"].as_array().unwrap().len(), 2);
     assert_eq!(json["impacts"][0]["impulse"][0][1], lift.impacts[0].impulses[0][1]);
+}
+
+/// The torques that are written cost what is said of them: by default what the result states of the real joints.
+#[test]
+fn what_the_written_torques_cost_is_told() {
+    let gait = gait("amble");
+    let (result, motion) = optimum_at(gait, Criterion::Torque, 0.3);
+    let legs = RealLegs::new(gait, &motion).unwrap();
+    let mut told = Vec::new();
+    for (option, sharing) in [("least-cost", Sharing::LeastCost(Criterion::Torque)), ("most-room", Sharing::MostRoom)] {
+        let written = piaffe(&result, &["lift", "-", "--rate", "4000", "--format", "json", "--shares", option]);
+        let written: Value = serde_json::from_slice(&written).unwrap();
+        let squares =
+            |m: &Value| m["torque"].as_array().unwrap().iter().map(|t| t.as_f64().unwrap().powi(2)).sum::<f64>();
+        let moments = written["moments"].as_array().unwrap();
+        let work = moments.windows(2).map(|pair| {
+            let [from, to] = [&pair[0], &pair[1]].map(|m| m["t"].as_f64().unwrap());
+            (to - from) * (squares(&pair[0]) + squares(&pair[1]))
+        });
+        let cost = work.sum::<f64>() / written["travel"].as_f64().unwrap();
+        let lift = Lift::close(gait, &motion, sharing).unwrap();
+        assert!((cost / lift.costs().torque - 1.0).abs() < 1e-3, "{option}: {cost} {:?}", lift.costs());
+        told.push(cost);
+        let words = legs.cost_of(&lift, sharing, &result);
+        assert!(words.contains(&format!("torque {:.1}", cost)), "{words} {cost}");
+        // The column is about the shares that are written.
+        let least = moments.iter().map(|m| m["margin"].as_f64().unwrap()).fold(f64::INFINITY, f64::min);
+        assert!(least <= legs.support.margin + 1e-3, "{least}");
+    }
+    assert!((told[0] / legs.costs.within_limits.torque - 1.0).abs() < 1e-3, "{told:?} {:?}", legs.costs);
+    assert!(told[1] > 1.001 * told[0], "{told:?}");
 }
 
 /// A step of a gait's exported robot, simulated by MuJoCo under the lifted torques as `change` has them: largest errors.

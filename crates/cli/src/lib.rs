@@ -161,7 +161,7 @@ enum Command {
         /// Of the random starts.
         #[arg(long, default_value_t = 1)]
         seed: u64,
-        /// Impose contact, torque and speed limits at each real leg, not only at the virtual ones.
+        /// Impose contact, torque and speed limits at each real leg, not only at the virtual ones, where the platform rolls.
         #[arg(long)]
         real_legs: bool,
         /// Number of starts, a default walk and random ones; if it is not given, as many as the optima found let expect others.
@@ -192,7 +192,7 @@ enum Command {
     },
     /// Write the motion of a result for the real legs: platform, joints, torques and the reaction on every foot.
     ///
-    /// The shares of the feet are those that leave most room within the limits of each.
+    /// What the torques cost on the real joints is told.
     #[command(after_help = "Example:\n  piaffe lift results/amble-energy.json --rate 500 --out amble.csv")]
     Lift {
         /// A result as JSON; `-` reads standard input.
@@ -203,6 +203,9 @@ enum Command {
         rate: f64,
         #[arg(long, value_enum, default_value = "csv")]
         format: lift::Format,
+        /// Which of the ways to share what legs that move as one do together.
+        #[arg(long, value_enum, default_value = "least-cost")]
+        shares: lift::Shares,
         /// `-` is standard output.
         #[arg(long, default_value = "-", value_name = "FILE|-")]
         out: String,
@@ -257,7 +260,7 @@ enum Command {
         /// FROM..TO:STEP or a list, m/s.
         #[arg(long, value_parser = sweep::parse_speeds, default_value = "0.1..1.6:0.1")]
         speeds: std::vec::Vec<f64>,
-        /// Impose contact, torque and speed limits at each real leg, not only at the virtual ones.
+        /// Impose contact, torque and speed limits at each real leg, not only at the virtual ones, where the platform rolls.
         #[arg(long)]
         real_legs: bool,
         /// Folder for the results.
@@ -517,7 +520,7 @@ fn answer(arguments: Arguments) -> anyhow::Result<bool> {
         Some(Command::Completions { shell }) => manual::completions(shell),
         Some(Command::Manual { out }) => manual::pages(&out),
         Some(Command::Export { result, format, rate, out }) => export::run(&result, format, rate, &out),
-        Some(Command::Lift { result, rate, format, out }) => lift::run(&result, format, rate, &out),
+        Some(Command::Lift { result, rate, format, shares, out }) => lift::run(&result, format, rate, shares, &out),
         Some(Command::Verify { results, json }) => verify::run(&results, json.as_deref()),
         Some(Command::Report { results, detail, out }) => report::run(&results, detail, &out),
         Some(Command::Sweep { gait, criterion, speeds, real_legs, folder, starts, seed, closely }) => {

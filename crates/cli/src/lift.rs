@@ -3,7 +3,7 @@
 use super::document::readback;
 use super::output;
 use clap::ValueEnum;
-use piaffe_optimizer::four_legs::{Lift, RealLegs, Verdict, csv, json};
+use piaffe_optimizer::four_legs::{Lift, RealLegs, Sharing, Verdict, csv, json};
 use piaffe_optimizer::readback::Readback;
 use std::path::Path;
 
@@ -15,17 +15,47 @@ pub enum Format {
     Json,
 }
 
+/// How legs that move as one share what they do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Shares {
+    /// Of those within the limits of every foot and joint, the shares that cost least in what the result minimizes.
+    LeastCost,
+    /// Those that leave most room within the limits.
+    MostRoom,
+}
+
 /// Writes the lifted motion of the result in `file` (`-`: standard input) to `out` (`-`: standard output).
-pub fn run(file: &Path, format: Format, rate: f64, out: &str) -> anyhow::Result<bool> {
-    let Readback { gait, motion, .. } = readback(file)?;
-    let lift = Lift::at_rate(gait, &motion, rate)?;
-    let legs = RealLegs::of(&lift);
+pub fn run(file: &Path, format: Format, rate: f64, shares: Shares, out: &str) -> anyhow::Result<bool> {
+    let Readback { result, gait, motion, .. } = readback(file)?;
+    let least = Sharing::LeastCost(result.criterion);
+    let [sharing, other] = match shares {
+        Shares::LeastCost => [least, Sharing::MostRoom],
+        Shares::MostRoom => [Sharing::MostRoom, least],
+    };
+    let lift = Lift::at_rate(gait, &motion, rate, sharing)?;
+    let legs = RealLegs::new(gait, &motion)?;
     if matches!(legs.verdict(), Verdict::BeyondLimits | Verdict::NoEquilibrium) {
-        output::note(&format!("{}; see the columns `margin` and `remainder`", legs.sentence()));
+        output::note(&format!("{}; {}", legs.sentence(), whereabouts(&legs)));
+    }
+    let (here, there) = (Lift::close(gait, &motion, sharing)?, Lift::close(gait, &motion, other)?);
+    output::note(&legs.cost_of(&here, sharing, &result));
+    if !legs.costs_alike(&here, &there) {
+        output::note(&format!("not written: {}", legs.cost_of(&there, other, &result)));
     }
     match format {
         Format::Json => output::json_to(out, &json(&lift))?,
         Format::Csv => output::bytes_to(out, csv(&lift).as_bytes())?,
     }
     Ok(true)
+}
+
+/// Where in what is written stands what the real legs cannot do.
+fn whereabouts(legs: &RealLegs) -> String {
+    let columns = "see the columns `margin` and `remainder`";
+    let impacts = "`margin` and `remainder` of an impact stand among the `impacts` of --format json";
+    match legs.between_and_at_impacts() {
+        [_, true] => columns.into(),
+        [true, false] => format!("{impacts}; the columns of the same names are of the moments between"),
+        [false, false] => format!("{columns}; {impacts}"),
+    }
 }

@@ -26,7 +26,7 @@ pub fn run(task: Task, real_legs: bool, settings: &Settings, json: Option<&str>)
     let result = task.answer(real_legs, settings, &watch).map_err(anyhow::Error::msg)?;
     let described = json != Some("-");
     let mut grounded = None;
-    if described && summary::shortest_flight(task.gait.description(), &result).is_some() {
+    if described && !summary::shortest_flights(task.gait.description(), &result).is_empty() {
         bar.set_message("without flight");
         grounded = without_flights(task.gait, &result, settings);
     }

@@ -5,6 +5,8 @@ use super::peaks;
 use piaffe_model::digits::digits;
 use piaffe_model::motion::Criterion;
 use piaffe_model::{Description, Mode};
+use piaffe_optimizer::constraints::sharing::applies;
+use piaffe_optimizer::four_legs::{RealLegs, Verdict};
 use piaffe_optimizer::result::{GaitResult, NotExamined, Status};
 use piaffe_optimizer::search::evidence::Effort;
 use piaffe_optimizer::sensitivity::Sensitivity;
@@ -48,10 +50,17 @@ fn confidence(r: &GaitResult) -> String {
     format!("reached by {} of {starts} starts{more}; {unseen}", best.reached)
 }
 
-/// What the limits at each real leg cost.
-fn at_real_legs(description: &Description, cost: f64, without: f64) -> String {
-    if !description.is_spatial() {
-        return "nothing is imposed: where the platform does not roll, legs that move as one share equally".into();
+/// What the limits at each real leg cost, or that none were imposed.
+fn at_real_legs(description: &Description, r: &GaitResult, cost: f64, without: f64) -> String {
+    if !applies(description) {
+        return match r.real_legs.as_ref().map(RealLegs::verdict) {
+            Some(Verdict::EqualShares) => "nothing need be imposed: each does its equal share within all limits",
+            Some(_) => {
+                "nothing is imposed: limits at each real leg are, where the platform rolls; what each can do stands below"
+            }
+            None => "nothing is imposed: limits at each real leg are, where the platform rolls",
+        }
+        .into();
     }
     let (more, without) = (100.0 * (cost / without - 1.0), decimal(without, 4));
     format!("{more:+.3} % against {without} with limits at the virtual legs only")
@@ -79,12 +88,14 @@ fn saving(s: &Sensitivity) -> String {
     format!("{} {sign}{change:.*} % saves {:.2} %", s.parameter, digits as usize, slope * change)
 }
 
-/// A flight that is as short as the gait allows: how long that is, s.
-pub fn shortest_flight(description: &Description, r: &GaitResult) -> Option<f64> {
+/// Flights that are as short as the gait allows: how long that is, s, each length once.
+pub fn shortest_flights(description: &Description, r: &GaitResult) -> Vec<f64> {
     let flights = description.phases.iter().zip(&r.durations).filter(|(phase, _)| phase.mode == Mode::Flight);
-    let mut shortest =
+    let shortest =
         flights.map(|(phase, t)| (phase.duration[0], *t)).filter(|(least, t)| *t <= least * (1.0 + SHORTEST));
-    shortest.next().map(|(least, _)| least)
+    let mut lengths: Vec<f64> = shortest.map(|(least, _)| least).collect();
+    lengths.dedup();
+    lengths
 }
 
 /// Prints all there is to know about a result; `grounded` is the optimum of the gait without flights, where that was looked for.
@@ -111,7 +122,7 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
     if let (Some(cost), Some(costs)) = (r.cost, r.costs) {
         writeln!(out, "  cost            {} {}", decimal(cost, 4), r.criterion.unit())?;
         if let Some(without) = r.virtual_cost {
-            writeln!(out, "  at real legs    {}", at_real_legs(description, cost, without))?;
+            writeln!(out, "  at real legs    {}", at_real_legs(description, r, cost, without))?;
         }
         for criterion in Criterion::ALL {
             writeln!(out, "  {:<15} {} {}", criterion.name(), decimal(costs.of(criterion), 4), criterion.unit())?;
@@ -124,15 +135,17 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
     if let Some(step) = r.step_length {
         let durations: Vec<String> = r.durations.iter().map(|t| format!("{} s", decimal(*t, 4))).collect();
         writeln!(out, "  phases          {}", durations.join(" + "))?;
-        if let Some(least) = shortest_flight(description, r) {
+        let shortest: Vec<String> = shortest_flights(description, r).into_iter().map(digits).collect();
+        if !shortest.is_empty() {
+            let it = if shortest.len() > 1 { "them" } else { "it" };
             let without = match grounded {
-                None => "the gait without it may cost less".into(),
+                None => format!("the gait without {it} may cost less"),
                 Some(GaitResult { gait, cost: Some(cost), .. }) => {
-                    format!("without it, {gait} takes at most {} {}", decimal(*cost, 4), r.criterion.unit())
+                    format!("without {it}, {gait} takes at most {} {}", decimal(*cost, 4), r.criterion.unit())
                 }
-                Some(GaitResult { gait, .. }) => format!("without it, no {gait} was found at this speed"),
+                Some(GaitResult { gait, .. }) => format!("without {it}, no {gait} was found at this speed"),
             };
-            writeln!(out, "  flight          as short as is allowed ({} s): {without}", digits(least))?;
+            writeln!(out, "  flight          as short as is allowed ({} s): {without}", shortest.join(" and "))?;
         }
         writeln!(out, "  step length     {} m", decimal(step, 4))?;
     }
@@ -188,7 +201,7 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
         writeln!(out, "  real legs       {}", legs.sentence())?;
         writeln!(out, "                  least margin {}", legs.support.words())?;
         writeln!(out, "                  at the impact {}", legs.impact.words())?;
-        writeln!(out, "                  {}", legs.cost(r))?;
+        writeln!(out, "                  {}", legs.cost(r, description))?;
     }
     for NotExamined { entry, reason } in &r.not_examined {
         writeln!(out, "  not examined    {} ({reason})", entry.replace('_', " "))?;

@@ -24,6 +24,11 @@ impl Friction {
         (0..d.joints()).map(|j| Friction::read(d, j, |number| number(d))).collect()
     }
 
+    /// The sign of dry friction at this rate; 0 without any.
+    pub fn side(&self, rate: f64) -> f64 {
+        if self.coulomb == 0.0 { 0.0 } else { rate.side(self.at_rest) }
+    }
+
     /// The same in numbers of another kind.
     pub fn cast<T: Scalar>(self) -> Friction<T> {
         Friction { damping: self.damping.into(), coulomb: self.coulomb.into(), at_rest: self.at_rest }

@@ -73,7 +73,15 @@ impl<'a> Walk<'a> {
     /// # Panics
     /// If the motion has not the numbers that the gait needs; `verify` tells.
     pub fn even(gait: &'a dyn Gait, motion: &Motion, intervals: usize) -> Result<Walk<'a>, Undefined> {
-        Walk::new(gait, motion, |_| (0..=intervals).map(|k| k as f64 / intervals as f64).collect())
+        Walk::new(gait, motion, |_, _, _| Ok(even(intervals)))
+    }
+
+    /// The same, with the last moment before and the first after dry friction of a joint changes its sign: there its motor's torque jumps.
+    ///
+    /// # Errors, Panics
+    /// As for [`Walk::even`].
+    pub fn even_between_turns(gait: &'a dyn Gait, motion: &Motion, intervals: usize) -> Result<Walk<'a>, Undefined> {
+        Walk::new(gait, motion, |cycle, phase, _| with_turns(cycle, phase, even(intervals)))
     }
 
     /// The walk at multiples of 1/`rate` (Hz), without the end, which is the beginning of the next step.
@@ -81,14 +89,19 @@ impl<'a> Walk<'a> {
     /// # Errors, Panics
     /// As for [`Walk::even`].
     pub fn at_rate(gait: &'a dyn Gait, motion: &Motion, rate: f64) -> Result<Walk<'a>, Undefined> {
-        Walk::new(gait, motion, |h| {
+        Walk::new(gait, motion, |_, _, h| {
             let first = (h.start * rate).ceil() as u64;
             let shares = (first..).map(|k| (k as f64 / rate - h.start) / h.duration);
-            shares.take_while(|s| *s < 1.0).collect()
+            Ok(shares.take_while(|s| *s < 1.0).collect())
         })
     }
 
-    fn new(gait: &'a dyn Gait, motion: &Motion, shares: impl Fn(&Span) -> Vec<f64>) -> Result<Walk<'a>, Undefined> {
+    /// `shares` are those of a phase of the cycle at which moments are.
+    fn new(
+        gait: &'a dyn Gait,
+        motion: &Motion,
+        shares: impl Fn(&Cycle, usize, &Span) -> Result<Vec<f64>, Undefined>,
+    ) -> Result<Walk<'a>, Undefined> {
         let d = gait.description();
         // Neither criterion nor speed has a part in where the robot is.
         let cycle = Cycle::resolving(gait, Criterion::Torque, 1.0, &theta(motion))?;
@@ -108,7 +121,7 @@ impl<'a> Walk<'a> {
                 origin[2] = -0.5 * role.feet(&ends[1], mode, [0.0; 3])[other_leg(mode.stance().unwrap_or_default())][2];
             }
             let mut glance = Glance::new(d, k);
-            for share in shares(&span) {
+            for share in shares(&cycle, k, &span)? {
                 let [first, last] = ends.each_ref();
                 let mut moment = match share {
                     s if s <= 0.0 => role.moment(first, mode, origin),
@@ -142,6 +155,65 @@ impl<'a> Walk<'a> {
     /// Duration of the step, s.
     pub fn duration(&self) -> f64 {
         self.phases.iter().map(|phase| phase.duration).sum()
+    }
+}
+
+/// Of a phase, both ends among them.
+fn even(intervals: usize) -> Vec<f64> {
+    (0..=intervals).map(|k| k as f64 / intervals as f64).collect()
+}
+
+/// These shares of a phase, and between two where dry friction changes its sign, the last share before that and the first after.
+fn with_turns(cycle: &Cycle, phase: usize, shares: Vec<f64>) -> Result<Vec<f64>, Undefined> {
+    let d = cycle.description();
+    let rubbing: Vec<(usize, Friction)> =
+        Friction::all(d).into_iter().enumerate().filter_map(|(joint, friction)| Some((joint, friction?))).collect();
+    if rubbing.iter().all(|(_, friction)| friction.coulomb == 0.0) {
+        return Ok(shares);
+    }
+    let mut glance = Glance::new(d, phase);
+    let mut rates = |share: f64| {
+        cycle.glance(phase, share, &mut glance)?;
+        Ok::<Numbers, Undefined>(rubbing.iter().map(|(joint, _)| glance.state.qd[*joint]).collect())
+    };
+    let mut with = Vec::with_capacity(shares.len());
+    let mut before: Option<(f64, Numbers)> = None;
+    for share in shares {
+        let now = rates(share)?;
+        if let Some((from, before)) = &before {
+            let first = with.len();
+            for (k, (_, friction)) in rubbing.iter().enumerate() {
+                let (old, new) = (friction.side(before[k]), friction.side(now[k]));
+                if old != new {
+                    let mut side = |share: f64| Ok(friction.side(rates(share)?[k]));
+                    with.push(border(*from, share, |share| Ok(side(share)? == old))?[0]);
+                    with.push(border(*from, share, |share| Ok(side(share)? != new))?[1]);
+                }
+            }
+            with[first..].sort_by(f64::total_cmp);
+        }
+        with.push(share);
+        before = Some((share, now));
+    }
+    with.dedup();
+    Ok(with)
+}
+
+/// The neighbours between which `holds` ends, which it does at `low` and not at `high`.
+fn border(
+    mut low: f64,
+    mut high: f64,
+    mut holds: impl FnMut(f64) -> Result<bool, Undefined>,
+) -> Result<[f64; 2], Undefined> {
+    loop {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            return Ok([low, high]);
+        } else if holds(middle)? {
+            low = middle;
+        } else {
+            high = middle;
+        }
     }
 }
 

@@ -13,6 +13,7 @@ use super::{certificate, compare, ink, levers, marks, player, price, real_legs, 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use piaffe_model::Description;
 use piaffe_model::motion::Criterion;
 use piaffe_optimizer::result::GaitResult;
 use serde_json::{Value, json};
@@ -294,7 +295,7 @@ fn section(s: &Subject, figures: &[Figure]) -> Markup {
                 (facts(s))
             }
             (gallery(name, &figures[1..]))
-            (receipt(r))
+            (receipt(r, s.description()))
             (price::section(r))
             (levers::section(r))
             (recovery::section(r))
@@ -349,7 +350,7 @@ fn drawing(of: &str, f: &Figure) -> Markup {
     }
 }
 
-fn receipt(r: &GaitResult) -> Markup {
+fn receipt(r: &GaitResult, d: &Description) -> Markup {
     let Some(receipt) = &r.receipt else { return html! {} };
     html! {
         div.receipt {
@@ -361,7 +362,7 @@ fn receipt(r: &GaitResult) -> Markup {
                 dt { "first-order optimality (KKT)" } dd { (receipt.kkt_residual.map_or(html! { "–" }, scientific)) }
             }
             @if let Some(c) = &r.certificate { (certificate::section(c)) }
-            @if let Some(legs) = &r.real_legs { (real_legs::section(legs, r)) }
+            @if let Some(legs) = &r.real_legs { (real_legs::section(legs, r, d)) }
             @for open in &r.not_examined { p.note { "Not examined: " (spaced(&open.entry)) " (" (open.reason) ")." } }
             h3 { "Limits without room to spare" }
             @if receipt.findings.is_empty() { p { "None: all limits have room." } }

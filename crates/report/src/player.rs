@@ -5,7 +5,7 @@ use super::plot::rounded;
 use super::scale::round_step;
 use super::subject::Subject;
 use piaffe_model::Mode;
-use piaffe_optimizer::four_legs::Legs;
+use piaffe_optimizer::four_legs::{Legs, Sharing};
 use piaffe_optimizer::walk::{Moment, Point};
 use serde_json::{Value, json};
 
@@ -53,7 +53,8 @@ pub fn data(s: &Subject) -> Value {
 
 /// On every foot, in the order of the legs; equal shares where the real legs are not known.
 fn reactions(s: &Subject, real: Option<&Legs>, m: &Moment) -> Vec<Point> {
-    let known = real.and_then(|legs| Some((legs.whole.description(), legs.instant(m).ok()?.reactions)));
+    let known =
+        real.and_then(|legs| Some((legs.whole.description(), legs.instant(m, Sharing::MostRoom).ok()?.reactions)));
     let of = |leg: usize, name: &str| match &known {
         Some((w, reactions)) => w.legs.iter().position(|l| l.name == name).map_or([0.0; 3], |k| reactions[k]),
         None if m.mode == Mode::Stance(leg) => m.force.map(|f| f / s.description().legs[leg].members.len() as f64),

@@ -8,7 +8,7 @@ use super::scale::domain;
 use super::scene::{Dash, Xy};
 use super::subject::{Subject, spaced};
 use maud::{Markup, html};
-use piaffe_model::Mode;
+use piaffe_model::{Description, Mode};
 use piaffe_optimizer::four_legs::{Instant, Lift, RealLegs, Verdict, Worst};
 use piaffe_optimizer::result::GaitResult;
 
@@ -84,14 +84,14 @@ fn limit(plot: &mut Plot, at: f64, name: String) {
     plot.limits.push(Limit { name, points: vec![[from, at], [to, at]] });
 }
 
-pub fn section(legs: &RealLegs, r: &GaitResult) -> Markup {
+pub fn section(legs: &RealLegs, r: &GaitResult, d: &Description) -> Markup {
     html! {
         h3 { "Real legs" }
         p { b { (verdict(legs)) } " In the equations of motion of the whole robot, equal shares leave lacking at most "
             (legs.equal_shares.support.words()) " between impacts and " (legs.equal_shares.impact.words_of_impact())
             " at an impact, the best shares " (legs.best_shares.support.words()) " and "
             (legs.best_shares.impact.words_of_impact()) "." }
-        p { "With the cheapest shares: " (legs.cost(r)) "; " (digits(legs.cost_by_load(r), 6))
+        p { "With the cheapest shares: " (legs.cost(r, d)) "; " (digits(legs.cost_by_load(r, d), 6))
             " if each foot pushes in proportion to its load." }
         @if legs.verdict() != Verdict::NoEquilibrium {
             ul { (worst("Least room between impacts", &legs.support)) (worst("Least room at an impact", &legs.impact)) }

@@ -3,7 +3,7 @@
 //! Counted so that equal shares cost what the virtual legs' joints do: Σ |Γ q̇| and, as n joints share one of the virtual leg,
 //! n Σ Γ². Unequal shares cost more, and which they are is a choice.
 
-use super::lift::Lift;
+use super::lift::{Instant, Lift};
 use super::limits::Affine;
 use piaffe_model::motion::Costs;
 use serde::{Deserialize, Serialize};
@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 pub struct Ways<T> {
     /// As the virtual legs' joints do it.
     pub virtual_legs: T,
-    /// Of each criterion the least that any shares cost, at every instant; of more than two feet that of those with the most room.
+    /// Of each criterion the least that any shares cost, at every instant.
     pub least: T,
     /// The same of shares that keep to all limits; at instants at which none do, of those with the most room.
     pub within_limits: T,
@@ -27,7 +27,7 @@ pub type RealCosts = Ways<Costs>;
 /// What the joints do at an instant.
 #[derive(Clone, Debug)]
 pub struct Effort {
-    /// Γ q̇ of each joint, W.
+    /// Γ q̇ of each joint, or of all together, W.
     pub powers: Vec<f64>,
     /// n Σ Γ², N²·m².
     pub torque: f64,
@@ -51,61 +51,52 @@ impl Effort {
             torque: motors.iter().map(square).sum(),
         }
     }
-}
 
-/// The one number of two feet at which Σ n Γ² is least.
-pub fn least_torque(motors: &[Motor]) -> f64 {
-    let sum = |of: &dyn Fn(&Motor) -> f64| motors.iter().map(|m| m.sharing * m.torque.slope[0] * of(m)).sum::<f64>();
-    let stiffness = sum(&|m| m.torque.slope[0]);
-    if stiffness > 0.0 { -sum(&|m| m.torque.at) / stiffness } else { 0.0 }
-}
-
-/// That at which Σ |Γ q̇| is least: between the two at which one of the torques vanishes and the slope changes its sign, and of all
-/// that cost the same the nearest to equal, so that it does not jump from instant to instant.
-pub fn least_energy(motors: &[Motor]) -> f64 {
-    /// Slopes that differ by this share of their sum cancel.
-    const SAME: f64 = 1e-9;
-    let slope = |m: &Motor| (m.torque.slope[0] * m.rate).abs();
-    let mut zeros: Vec<(f64, f64)> =
-        motors.iter().filter(|m| slope(m) > 0.0).map(|m| (-m.torque.at / m.torque.slope[0], slope(m))).collect();
-    zeros.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let total: f64 = zeros.iter().map(|(_, slope)| slope).sum();
-    let mut passed = 0.0;
-    for (k, (zero, slope)) in zeros.iter().enumerate() {
-        passed += slope;
-        if 2.0 * passed >= (1.0 - SAME) * total {
-            let flat = zeros.get(k + 1).filter(|_| 2.0 * passed <= (1.0 + SAME) * total);
-            return 0.0_f64.clamp(*zero, flat.map_or(*zero, |(next, _)| *next));
-        }
+    /// With one power for all joints, Σ |Γ q̇|. The cheapest shares of many feet jump from one joint to another; what they cost
+    /// together does not.
+    pub fn together(self) -> Effort {
+        Effort { powers: vec![self.powers.iter().map(|power| power.abs()).sum()], ..self }
     }
-    0.0
 }
 
 impl RealCosts {
     /// Of a lifted motion.
     pub fn of(lift: &Lift) -> RealCosts {
-        let costs = |way: fn(&Ways<Effort>) -> &Effort| {
-            let mut work = Costs { energy: 0.0, torque: 0.0 };
-            for phase in 0..lift.durations.len() {
-                let efforts = || lift.instants.iter().filter(|i| i.phase == phase).map(|i| (i.time, way(&i.efforts)));
-                let joints = efforts().next().map_or(0, |(_, effort)| effort.powers.len());
-                let over_time = |of: &dyn Fn(&Effort) -> f64| {
-                    efforts().map(|(time, effort)| (time, of(effort))).collect::<Vec<_>>()
-                };
-                work.torque += integral(&over_time(&|effort| effort.torque), |parabola, to| parabola.integral(to));
-                for joint in 0..joints {
-                    work.energy += integral(&over_time(&|effort| effort.powers[joint]), Parabola::magnitude);
-                }
-            }
-            Costs { energy: work.energy / lift.travel, torque: work.torque / lift.travel }
-        };
         Ways {
-            virtual_legs: costs(|way| &way.virtual_legs),
-            least: costs(|way| &way.least),
-            within_limits: costs(|way| &way.within_limits),
-            proportional: costs(|way| &way.proportional),
+            virtual_legs: costs(lift, |instant| &instant.efforts.virtual_legs),
+            least: costs(lift, |instant| &instant.efforts.least),
+            within_limits: costs(lift, |instant| &instant.efforts.within_limits),
+            proportional: costs(lift, |instant| &instant.efforts.proportional),
         }
     }
+}
+
+/// Both criteria over a lifted motion of what is done at each instant, per metre of travel.
+pub fn costs(lift: &Lift, effort: fn(&Instant) -> &Effort) -> Costs {
+    let mut work = Costs { energy: 0.0, torque: 0.0 };
+    let mut add = |instants: &[Instant]| {
+        let over_time = |of: &dyn Fn(&Effort) -> f64| {
+            let mut points: Vec<(f64, f64)> = instants.iter().map(|i| (i.time, of(effort(i)))).collect();
+            points.dedup_by(|b, a| a.0 == b.0);
+            points
+        };
+        work.torque += integral(&over_time(&|effort| effort.torque), |parabola, to| parabola.integral(to));
+        for joint in 0..instants.first().map_or(0, |i| effort(i).powers.len()) {
+            work.energy += integral(&over_time(&|effort| effort.powers[joint]), Parabola::magnitude);
+        }
+    };
+    for phase in lift.instants.chunk_by(|a, b| a.phase == b.phase) {
+        // Where dry friction changes its sign, the torques jump: on both sides by themselves, and what is between them.
+        let mut begun = 0;
+        for smooth in phase.chunk_by(|a, b| lift.legs.rubs_alike(&a.posture, &b.posture)) {
+            if begun > 0 {
+                add(&phase[begun - 1..=begun]);
+            }
+            add(smooth);
+            begun += smooth.len();
+        }
+    }
+    Costs { energy: work.energy / lift.travel, torque: work.torque / lift.travel }
 }
 
 /// `c0 + c1 t + c2 t²`.
@@ -167,24 +158,5 @@ mod tests {
         assert!((integral(&constant, Parabola::magnitude) - 6.0).abs() < 1e-12);
         let nothing: Vec<(f64, f64)> = [0.0, 0.5, 2.0].map(|t| (t, 0.0)).to_vec();
         assert_eq!(integral(&nothing, Parabola::magnitude), 0.0);
-    }
-
-    #[test]
-    fn no_share_is_cheaper_than_the_cheapest() {
-        let mut rng = fastrand::Rng::with_seed(5);
-        let mut any = || 2.0 * rng.f64() - 1.0;
-        for _ in 0..100 {
-            let motors: Vec<Motor> = (0..6)
-                .map(|_| Motor { torque: Affine { at: any(), slope: [any()][..].into() }, rate: any(), sharing: 2.0 })
-                .collect();
-            let at = |s: f64| {
-                let effort = Effort::new(&motors, &[s], &[s]);
-                (effort.powers.iter().map(|power| power.abs()).sum::<f64>(), effort.torque)
-            };
-            let (energy, torque) = (at(least_energy(&motors)).0, at(least_torque(&motors)).1);
-            for s in (-100..=100).map(|k| 0.1 * f64::from(k)) {
-                assert!(at(s).0 >= energy - 1e-12 && at(s).1 >= torque - 1e-12);
-            }
-        }
     }
 }

@@ -1,21 +1,25 @@
 //! The motion of virtual legs, lifted to the real robot: every joint, the platform in space, torques and reactions.
 
-use super::cost::{Effort, Motor, Ways, least_energy, least_torque};
+use super::cheapest::Cheapest;
+use super::cost::{Effort, Motor, Ways, costs};
 use super::equations::{Equations, PLATFORM};
 use super::lack::Lack;
 use super::limits::{Affine, Limit, Limits};
-use super::margin::{Choice, best};
+use super::margin::{Choice, best, lowest};
 use super::posture::{Legs, Posture};
 use super::rows::{Rows, dot};
 use super::shares::{Reactions, Shares};
 use crate::flow::Undefined;
 use crate::walk::{Moment, Point, Walk};
 use piaffe_model::Gait;
-use piaffe_model::motion::Motion;
+use piaffe_model::motion::{Costs, Criterion, Motion};
 use rayon::prelude::*;
 
 /// Squeezes whose levers at a joint are shorter than this part of a leg do nothing there.
 const ROUNDING: f64 = 1e-12;
+
+/// Intervals of each phase between the instants that are looked at.
+const INTERVALS: usize = 400;
 
 /// Why there is no lifted motion.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -26,8 +30,17 @@ pub enum NotLifted {
     NoWhole { gait: String },
     #[error(transparent)]
     Undefined(#[from] Undefined),
-    #[error("the cone program for the shares of the feet at {time:.4} s was not solved")]
+    #[error("the cone programs for the shares of the feet at {time:.4} s were not solved")]
     Unsolved { time: f64 },
+}
+
+/// Which of the shares that there are a lifted motion has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sharing {
+    /// Those that leave most room within the limits.
+    MostRoom,
+    /// Of those that keep to the limits the cheapest; at instants at which none do, those with the most room.
+    LeastCost(Criterion),
 }
 
 /// The whole robot at one instant, in support or in flight.
@@ -44,10 +57,14 @@ pub struct Instant {
     pub torque: Vec<f64>,
     /// On every foot, world axes, N.
     pub reactions: Vec<Point>,
-    /// Least margin of the limits on the legs in support, in flight of all legs, and which are in the way of more.
+    /// Least margin of the limits on the legs in support, in flight of all legs, with these shares.
+    pub room: f64,
+    /// What the joints do with them.
+    pub effort: Effort,
+    /// The same margin with the most room that there is, and which limits are in the way of more.
     pub margin: f64,
     pub binding: Vec<(Limit, f64)>,
-    /// What the equations of motion lack with these shares, and with equal ones.
+    /// What the equations of motion lack with the best shares, and with equal ones.
     pub lack: Lack,
     pub equal_lack: Lack,
     /// What the joints do, by ways to share.
@@ -89,32 +106,41 @@ pub struct Lift<'a> {
 }
 
 impl<'a> Lift<'a> {
-    /// At equally spaced times, both ends of each phase among them.
+    /// At equally spaced times, both ends of each phase among them, with the most room.
     ///
     /// # Errors
     /// If there is no model of the whole robot or no such motion.
     pub fn even(gait: &'a dyn Gait, motion: &Motion, intervals: usize) -> Result<Lift<'a>, NotLifted> {
         let walk = Walk::even(gait, motion, intervals)?;
-        Lift::new(gait, &walk.moments, &walk)
+        Lift::new(gait, &walk.moments, &walk, Sharing::MostRoom)
+    }
+
+    /// At such times and on both sides of where dry friction changes its sign: those that a verdict and costs are made of.
+    ///
+    /// # Errors
+    /// As for [`Lift::even`].
+    pub fn close(gait: &'a dyn Gait, motion: &Motion, sharing: Sharing) -> Result<Lift<'a>, NotLifted> {
+        let walk = Walk::even_between_turns(gait, motion, INTERVALS)?;
+        Lift::new(gait, &walk.moments, &walk, sharing)
     }
 
     /// At multiples of 1/`rate` (Hz), and at the end of each phase.
     ///
     /// # Errors
     /// As for [`Lift::even`].
-    pub fn at_rate(gait: &'a dyn Gait, motion: &Motion, rate: f64) -> Result<Lift<'a>, NotLifted> {
+    pub fn at_rate(gait: &'a dyn Gait, motion: &Motion, rate: f64, sharing: Sharing) -> Result<Lift<'a>, NotLifted> {
         let (ends, mut walk) = (Walk::even(gait, motion, 1)?, Walk::at_rate(gait, motion, rate)?);
         walk.moments.extend(ends.moments.into_iter().filter(|m| m.share == 1.0));
         walk.moments
             .sort_by(|a, b| (a.phase, a.time).partial_cmp(&(b.phase, b.time)).unwrap_or(std::cmp::Ordering::Equal));
-        Lift::new(gait, &walk.moments, &walk)
+        Lift::new(gait, &walk.moments, &walk, sharing)
     }
 
-    fn new(gait: &'a dyn Gait, moments: &[Moment], walk: &Walk) -> Result<Lift<'a>, NotLifted> {
+    fn new(gait: &'a dyn Gait, moments: &[Moment], walk: &Walk, sharing: Sharing) -> Result<Lift<'a>, NotLifted> {
         let no_whole = || NotLifted::NoWhole { gait: gait.description().key.into() };
         let legs = Legs::new(gait).ok_or_else(no_whole)?;
         // Of several failures the first one is told.
-        let instants: Vec<_> = moments.par_iter().map(|m| legs.instant(m)).collect();
+        let instants: Vec<_> = moments.par_iter().map(|m| legs.instant(m, sharing)).collect();
         let instants = instants.into_iter().collect::<Result<_, _>>()?;
         // The last moment of each phase.
         let ends = |k: usize| moments.get(k + 1).is_none_or(|next| next.phase != moments[k].phase);
@@ -129,14 +155,19 @@ impl<'a> Lift<'a> {
             travel: walk.travel,
         })
     }
+
+    /// What the joints cost with the shares that it has.
+    pub fn costs(&self) -> Costs {
+        costs(self, |instant| &instant.effort)
+    }
 }
 
 impl Legs<'_> {
     /// What the real legs do at a moment of the gait.
     ///
     /// # Errors
-    /// If the cone program is not solved.
-    pub fn instant(&self, m: &Moment) -> Result<Instant, NotLifted> {
+    /// If a cone program is not solved.
+    pub fn instant(&self, m: &Moment, sharing: Sharing) -> Result<Instant, NotLifted> {
         let posture = self.posture(m);
         let equations = Equations::new(self.whole, &posture, self.description.leg_length());
         let stance: Vec<usize> = m.mode.stance().into_iter().flat_map(|leg| self.members(leg)).collect();
@@ -151,31 +182,34 @@ impl Legs<'_> {
         let shares = Shares::new(&equations.ranks(&columns, &demand, PLATFORM, self.axis()), &equal);
         let motors = self.motors(&posture, &shares, &demand, &columns);
         let rooms = Limits { legs: self }.instant(&stance, &posture, &shares, &motors);
-        let choice = Choice::new(&rooms, shares.squeezes.len()).ok_or(NotLifted::Unsolved { time: m.time })?;
+        let unsolved = || NotLifted::Unsolved { time: m.time };
+        let choice = Choice::new(&rooms, shares.squeezes.len()).ok_or_else(unsolved)?;
         let proportional = shares.nearest_to(&self.proportional(&posture, &shares.nearest));
-        // Of two feet the cheapest shares are known, of more feet not.
-        let (energy, torque) = match shares.squeezes.len() {
-            1 => (least_energy(&motors), least_torque(&motors)),
-            _ => (0.0, 0.0),
-        };
+        let cheapest = Cheapest { motors: &motors, rooms: &rooms, choice: &choice };
+        let cheapest = |criterion| cheapest.shares(criterion).ok_or_else(unsolved);
+        let [[energy, energy_within], [torque, torque_within]] =
+            [cheapest(Criterion::Energy)?, cheapest(Criterion::Torque)?];
+        let together = |effort: Effort| if stance.len() > 2 { effort.together() } else { effort };
         let efforts = Ways {
             virtual_legs: Effort {
                 powers: m.torque.iter().zip(&m.qd).map(|(torque, rate)| torque * rate).collect(),
                 torque: m.torque.iter().map(|torque| torque * torque).sum(),
             },
-            least: Effort::new(
-                &motors,
-                &choice.nearest(energy, f64::NEG_INFINITY),
-                &choice.nearest(torque, f64::NEG_INFINITY),
-            ),
-            within_limits: Effort::new(&motors, &choice.nearest(energy, 0.0), &choice.nearest(torque, 0.0)),
+            least: together(Effort::new(&motors, &energy, &torque)),
+            within_limits: together(Effort::new(&motors, &energy_within, &torque_within)),
             proportional: Effort::new(&motors, &proportional, &proportional),
         };
         let best = choice.best;
+        let given = |s: &[f64]| Effort::new(&motors, s, s);
+        let (s, effort) = match sharing {
+            Sharing::MostRoom => (&best.s, given(&best.s)),
+            Sharing::LeastCost(Criterion::Energy) => (&energy_within, together(given(&energy_within))),
+            Sharing::LeastCost(Criterion::Torque) => (&torque_within, given(&torque_within)),
+        };
 
         let mut equal_lack = less(&demand, &columns, &equal);
         (0..self.joints.len()).for_each(|j| equal_lack[PLATFORM + j] -= m.torque[self.joints[j]] / self.sharing(j));
-        let reactions = shares.reactions(&best.s);
+        let reactions = shares.reactions(s);
         let mut left = less(&demand, &columns, &reactions);
         let torque = left.split_off(PLATFORM);
         let lack = |left: &[f64]| Lack::new(left, &posture, self.weight(), self.description.leg_length());
@@ -187,6 +221,8 @@ impl Legs<'_> {
             posture,
             stance,
             torque,
+            room: lowest(&rooms, s),
+            effort,
             margin: best.margin,
             binding: best.binding,
             lack,
@@ -198,7 +234,7 @@ impl Legs<'_> {
     /// What the real legs do where the foot of `virtual_leg` lands; `m` is the last moment before.
     ///
     /// # Errors
-    /// If the cone program is not solved.
+    /// If a cone program is not solved.
     pub fn impact(&self, gait: &dyn Gait, m: &Moment, virtual_leg: usize) -> Result<Impact, NotLifted> {
         let d = self.description;
         let (nc, shape) = (d.positions(), &gait.description().shapes.impact);

@@ -3,12 +3,13 @@
 //! The whole robot moves as the gait says (`posture`); its equations of motion (`equations`) then say what torques and
 //! reactions that takes in all. Where two feet stand, there is a choice: they can push against each other. `shares` finds
 //! all ways to share the reactions, `limits` what every foot and joint must keep to, `margin` the best of the
-//! ways. `lift` is the whole motion, `receipt` the verdict on it.
+//! ways, `cheapest` those that cost least. `lift` is the whole motion, `receipt` the verdict on it.
 //!
 //! For a curvet and a trot equal shares do (§2.2, §2.4). In an amble they do not: the platform neither pitches nor yaws, and
 //! only unequal loads on the fore and the hind foot hold it so. The torques of a pair's joints then differ too; their sums are
 //! the virtual leg's (§2.3 leaves this open).
 
+mod cheapest;
 mod cost;
 mod equations;
 mod lack;
@@ -25,7 +26,7 @@ mod words;
 pub use cost::{Effort, Motor, RealCosts, Ways};
 pub use equations::{Equations, PLATFORM};
 pub use lack::{Component, Lack};
-pub use lift::{Impact, Instant, Lift, NotLifted};
+pub use lift::{Impact, Instant, Lift, NotLifted, Sharing};
 pub use limits::{Affine, Limit, Limits, Room};
 pub use margin::{Best, best, cone};
 pub use posture::{Legs, Posture};

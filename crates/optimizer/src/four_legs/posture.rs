@@ -60,6 +60,12 @@ impl<'a> Legs<'a> {
         sharing(self.description, self.joints[joint])
     }
 
+    /// Whether dry friction has the same sign in all joints.
+    pub fn rubs_alike(&self, a: &Posture, b: &Posture) -> bool {
+        let mut joints = self.friction.iter().zip(a.rates().iter().zip(b.rates()));
+        joints.all(|(friction, (a, b))| friction.is_none_or(|friction| friction.side(*a) == friction.side(*b)))
+    }
+
     /// The robot's weight, N.
     pub fn weight(&self) -> f64 {
         self.whole.description().total_mass() * self.description.gravity

@@ -2,15 +2,13 @@
 
 use super::cost::RealCosts;
 use super::lack::Lack;
-use super::lift::{Lift, NotLifted};
+use super::lift::{Lift, NotLifted, Sharing};
 use super::limits::{Limit, Limits};
 use crate::constraints::sharing::BALANCED;
 use piaffe_model::Gait;
 use piaffe_model::motion::Motion;
 use serde::{Deserialize, Serialize};
 
-/// Intervals of each phase between the instants that are looked at.
-const INTERVALS: usize = 400;
 /// A margin above this is none that is violated.
 pub const LEAST_MARGIN: f64 = -1e-6;
 
@@ -89,7 +87,7 @@ impl RealLegs {
     /// # Errors
     /// If there is no model of the whole robot or no such motion.
     pub fn new(gait: &dyn Gait, motion: &Motion) -> Result<RealLegs, NotLifted> {
-        Ok(RealLegs::of(&Lift::even(gait, motion, INTERVALS)?))
+        Ok(RealLegs::of(&Lift::close(gait, motion, Sharing::MostRoom)?))
     }
 
     /// Looks at the instants of a lifted motion.
@@ -139,6 +137,12 @@ impl RealLegs {
         } else {
             Verdict::UnequalShares
         }
+    }
+
+    /// Whether the real legs can do what the virtual ones do between impacts, and at them.
+    pub fn between_and_at_impacts(&self) -> [bool; 2] {
+        let can = |lack: Lack, worst: &Worst| lack.share <= BALANCED && worst.margin >= LEAST_MARGIN;
+        [can(self.best_shares.support, &self.support), can(self.best_shares.impact, &self.impact)]
     }
 }
 

@@ -54,7 +54,7 @@ fn rows<'l>(lift: &'l Lift<'_>) -> impl Iterator<Item = Row> + 'l {
             qdd: p.ud[6..].to_vec(),
             torque: i.torque.clone(),
             force: i.reactions.clone(),
-            margin: i.margin,
+            margin: i.room,
             remainder: i.lack.share,
         }
     })
@@ -118,6 +118,7 @@ pub fn json(lift: &Lift) -> Value {
             "after": speeds(&after),
             "impulse": i.impulses,
             "margin": i.margin,
+            "remainder": i.lack.share,
             "binding": i.binding.iter().map(|(l, weight)| json!({ "limit": limits.name(*l), "weight": weight })).collect::<Vec<_>>(),
         })
     });

@@ -1,9 +1,12 @@
 //! The verdict on the real legs in words.
 
 use super::lack::{Component, Lack};
-use super::receipt::{Lacks, RealLegs, Verdict, Worst};
-use crate::constraints::sharing::BALANCED;
+use super::lift::{Lift, Sharing};
+use super::receipt::{LEAST_MARGIN, Lacks, RealLegs, Verdict, Worst};
+use crate::constraints::sharing::{self, BALANCED};
 use crate::result::GaitResult;
+use piaffe_model::Description;
+use piaffe_model::motion::Criterion;
 
 /// What is lacking beyond this is no rounding.
 const ROUNDING: f64 = 1e-9;
@@ -42,6 +45,9 @@ impl RealLegs {
     fn whether(&self) -> String {
         match self.verdict() {
             Verdict::EqualShares => "each leg of a pair does its equal share, within all limits".into(),
+            Verdict::UnequalShares if self.equal_shares.support.share <= BALANCED => {
+                "equal shares between impacts and unequal ones at them keep to all limits".into()
+            }
             Verdict::UnequalShares => {
                 format!(
                     "unequal shares keep to all limits; one foot carries up to {:.0} % of the load",
@@ -63,30 +69,56 @@ impl RealLegs {
 
 impl RealLegs {
     /// What the real joints cost in the result's criterion, beside what the virtual legs' joints do.
-    pub fn cost(&self, result: &GaitResult) -> String {
+    pub fn cost(&self, result: &GaitResult, d: &Description) -> String {
         let criterion = result.criterion;
         // Where no shares are within the limits all the time, the least of any is a bound.
-        let (cost, how) = match self.verdict() {
-            Verdict::BeyondLimits => (&self.costs.least, "at least "),
-            _ => (&self.costs.within_limits, ""),
+        let (cost, how) = if self.support.margin >= LEAST_MARGIN {
+            (&self.costs.within_limits, "")
+        } else {
+            (&self.costs.least, "at least ")
         };
         let (real, without) = (cost.of(criterion), self.costs.virtual_legs.of(criterion));
         let more = real / without - 1.0;
         let beside = if more.abs() < SAME_COST { "as".into() } else { format!("{} % more than", percent(more)) };
-        let (name, unit, real) = (criterion.name(), criterion.unit(), number(self.as_stated(real, result)));
+        let (name, unit, real) =
+            (criterion.name(), criterion.unit(), number(self.as_stated(real, criterion, result, d)));
         format!("{name} on the real joints {how}{real} {unit}, {beside} at the virtual legs'")
     }
 
     /// The same if each foot pushes in proportion to its load.
-    pub fn cost_by_load(&self, result: &GaitResult) -> f64 {
-        self.as_stated(self.costs.proportional.of(result.criterion), result)
+    pub fn cost_by_load(&self, result: &GaitResult, d: &Description) -> f64 {
+        self.as_stated(self.costs.proportional.of(result.criterion), result.criterion, result, d)
+    }
+
+    /// What the shares of a lifted motion cost.
+    pub fn cost_of(&self, lift: &Lift, sharing: Sharing, result: &GaitResult) -> String {
+        let (d, costs) = (lift.legs.description, lift.costs());
+        let each = Criterion::ALL.map(|criterion| {
+            let cost = number(self.as_stated(costs.of(criterion), criterion, result, d));
+            format!("{} {cost} {}", criterion.name(), criterion.unit())
+        });
+        let which = match sharing {
+            Sharing::MostRoom => "the shares with the most room".into(),
+            Sharing::LeastCost(criterion) => {
+                let all_the_time = self.support.margin >= LEAST_MARGIN;
+                let elsewhere = if all_the_time { "" } else { ", and where none do, those with the most room," };
+                format!("the shares of least {} that keep to all limits{elsewhere}", criterion.name())
+            }
+        };
+        format!("{which} cost on the real joints {}", each.join(", "))
+    }
+
+    /// Whether the shares of two lifted motions cost the same.
+    pub fn costs_alike(&self, a: &Lift, b: &Lift) -> bool {
+        let (a, b) = (a.costs(), b.costs());
+        Criterion::ALL.into_iter().all(|c| (a.of(c) / b.of(c) - 1.0).abs() < SAME_COST)
     }
 
     /// Costs here are sums over instants, which compare with each other; beside the result's own, an integral, they are put in its
     /// proportion.
-    fn as_stated(&self, cost: f64, result: &GaitResult) -> f64 {
-        let known = if result.limits_at_real_legs { &self.costs.proportional } else { &self.costs.virtual_legs };
-        let scale = result.cost.map_or(1.0, |stated| stated / known.of(result.criterion));
+    fn as_stated(&self, cost: f64, criterion: Criterion, result: &GaitResult, d: &Description) -> f64 {
+        let known = if sharing::applies(d) { &self.costs.proportional } else { &self.costs.virtual_legs };
+        let scale = result.costs.map_or(1.0, |stated| stated.of(criterion) / known.of(criterion));
         if scale.is_finite() { cost * scale } else { cost }
     }
 }
@@ -143,5 +175,32 @@ impl Worst {
         // No room at all has no sign.
         let margin = if self.margin.abs() < 5e-5 { 0.0 } else { self.margin };
         format!("{margin:.4} (phase {}, t = {:.3} s: {})", self.phase, self.time, limits.join(", "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::cost::Ways;
+    use super::*;
+    use piaffe_model::motion::Costs;
+
+    #[test]
+    fn what_is_unequal_is_named() {
+        let lack = |share| Lack { of: Component::PitchingMoment, share };
+        let worst = || Worst { margin: 0.1, phase: 1, time: 0.0, binding: Vec::new() };
+        let costs = Costs { energy: 1.0, torque: 1.0 };
+        let of = |support: f64, impact: f64| RealLegs {
+            equal_shares: Lacks { support: lack(support), impact: lack(impact) },
+            best_shares: Lacks { support: Lack::NONE, impact: Lack::NONE },
+            support: worst(),
+            impact: worst(),
+            costs: Ways { virtual_legs: costs, least: costs, within_limits: costs, proportional: costs },
+            impossible: 0.0,
+            largest_load: if support > 0.0 { 0.8 } else { 0.5 },
+            instants: 1,
+        };
+        assert_eq!(of(0.0, 0.0).sentence(), "each leg of a pair does its equal share, within all limits");
+        assert_eq!(of(0.0, 0.2).sentence(), "equal shares between impacts and unequal ones at them keep to all limits");
+        assert!(of(0.2, 0.2).sentence().contains("one foot carries up to 80 % of the load"));
     }
 }

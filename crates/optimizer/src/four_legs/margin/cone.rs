@@ -1,32 +1,18 @@
 //! The same for any number of feet: a cone program, `height(s) − m ≥ |tangential(s)|` for every limit, solved by Clarabel.
 
-use super::{Best, SLACK, weighed};
+use super::{Best, SLACK, lowest, on_the_way, weighed};
 use crate::four_legs::limits::Room;
-use crate::four_legs::shares::Squeeze;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use piaffe_sqp::qp::interior::settings;
 
-const BISECTIONS: usize = 60;
-
 /// See [`best`](super::best). `None` if the cone program was not solved.
 pub fn best(rooms: &[Room], squeezes: usize) -> Option<Best> {
     let solution = maximize(rooms, squeezes)?;
-    let margin = |s: &[f64]| rooms.iter().map(|room| room.margin(s)).fold(f64::INFINITY, f64::min);
-    let most = margin(&solution.s);
+    let most = lowest(rooms, &solution.s);
     // The margin is concave on the way from 0 to s.
-    let on_the_way = |part: f64| solution.s.iter().map(|s| part * s).collect::<Squeeze>();
-    let (mut low, mut high) = (0.0, 1.0);
-    if margin(&on_the_way(low)) >= most - SLACK {
-        high = low;
-    } else {
-        for _ in 0..BISECTIONS {
-            let middle = 0.5 * (low + high);
-            if margin(&on_the_way(middle)) >= most - SLACK { high = middle } else { low = middle }
-        }
-    }
-    let s = on_the_way(high);
-    Some(Best { margin: margin(&s), s, binding: solution.binding })
+    let s = on_the_way(&vec![0.0; squeezes], &solution.s, |s| lowest(rooms, s) >= most - SLACK);
+    Some(Best { margin: lowest(rooms, &s), s, binding: solution.binding })
 }
 
 fn maximize(rooms: &[Room], squeezes: usize) -> Option<Best> {

@@ -9,12 +9,12 @@ pub mod line;
 use super::limits::{Limit, Room};
 use super::shares::Squeeze;
 use line::Line;
-use smallvec::smallvec;
 
 /// Room that is given up for a share nearer to the equal one.
 pub const SLACK: f64 = 1e-9;
 /// Limits that weigh less than this part of the whole are not in the way.
 const IN_THE_WAY: f64 = 1e-3;
+const BISECTIONS: usize = 60;
 
 /// The share with the most room.
 #[derive(Clone, Debug)]
@@ -29,7 +29,8 @@ pub struct Best {
 /// The shares that there are, seen by the room that they leave.
 pub struct Choice {
     pub best: Best,
-    line: Option<Line>,
+    /// Of two feet.
+    pub line: Option<Line>,
 }
 
 /// Of all shares with the least margin as large as it can be (to `SLACK`), the one on the way to it from `s = 0` that comes first.
@@ -50,14 +51,6 @@ impl Choice {
         };
         Some(Choice { best, line })
     }
-
-    /// The share nearest to `wanted` of those that leave this room; where none do, or more than two feet stand, the best.
-    pub fn nearest(&self, wanted: f64, room: f64) -> Squeeze {
-        match &self.line {
-            Some(line) => smallvec![line.nearest_with_room(wanted, room)],
-            None => self.best.s.clone(),
-        }
-    }
 }
 
 /// Where there is no choice.
@@ -67,6 +60,25 @@ fn settled(rooms: &[Room]) -> Best {
     let least = margins.min_by(|a, b| a.1.total_cmp(&b.1));
     let binding = least.map(|(limit, _)| (limit, 1.0)).into_iter().collect();
     Best { s, margin: least.map_or(f64::INFINITY, |(_, margin)| margin), binding }
+}
+
+/// The least margin that these shares leave.
+pub fn lowest(rooms: &[Room], s: &[f64]) -> f64 {
+    rooms.iter().map(|room| room.margin(s)).fold(f64::INFINITY, f64::min)
+}
+
+/// From one choice to another that is good enough, the first that is; all beyond it are.
+pub fn on_the_way(from: &[f64], to: &[f64], enough: impl Fn(&[f64]) -> bool) -> Squeeze {
+    let at = |part: f64| from.iter().zip(to).map(|(from, to)| from + part * (to - from)).collect::<Squeeze>();
+    if enough(from) {
+        return Squeeze::from_slice(from);
+    }
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (low + high);
+        if enough(&at(middle)) { high = middle } else { low = middle }
+    }
+    at(high)
 }
 
 /// Weights of limits as a list: each limit once, the heaviest first, without those that are not in the way.
