@@ -323,3 +323,23 @@ fn what_is_equal_by_chance_is_not_one() {
     let mounts: Vec<&str> = bound.iter().map(|l| l.name.as_str()).filter(|name| name.contains("mount.x")).collect();
     assert_eq!(mounts, ["legs.{FR,FL}.mount.x", "legs.{RR,RL}.mount.x"]);
 }
+
+/// What is named changes, and nothing else; braces name what is on either side.
+#[test]
+fn only_what_is_named_is_set() {
+    let (module, robot, gait) = files("trot");
+    let files = RobotFiles { module: module.into(), robot, gaits: vec![gait] };
+    let changed = |name: &str, value: f64| -> Vec<(String, f64)> {
+        let mut other = files.clone();
+        other.set(name, value).unwrap();
+        let before = files.numbers();
+        other.numbers().into_iter().filter(|number| !before.contains(number)).collect()
+    };
+    let named = |leg: &str, value: f64| (format!("legs.{leg}.mount.x"), value);
+    assert_eq!(changed("legs.hind_left.mount.x", -0.2), [named("hind_left", -0.2)]);
+    assert_eq!(
+        changed("legs.{fore_left,hind_left}.mount.x", 0.2),
+        [named("fore_left", 0.2), named("hind_left", -0.2)],
+        "those of opposite signs stay so"
+    );
+}

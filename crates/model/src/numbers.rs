@@ -14,7 +14,7 @@ pub struct Lever {
     /// Where each stands, such as `links.left_shin.mass`.
     pub numbers: Cow<'static, [&'static str]>,
     pub unit: &'static str,
-    /// Of the first that is not zero.
+    /// Of the first.
     pub value: f64,
     /// Which of [`Description::numbers`] change with it, and by how much per unit.
     pub slopes: Cow<'static, [(usize, f64)]>,

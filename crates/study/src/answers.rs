@@ -303,3 +303,28 @@ fn slope_in(all: &[Sensitivity], name: &str, value: f64) -> Option<f64> {
     let towards = |slope: &Sensitivity| if slope.value * value < 0.0 { -slope.slope } else { slope.slope };
     whole.then(|| of_these.into_iter().map(towards).sum())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Sensitivity, slope_in};
+
+    #[test]
+    fn a_slope_is_in_all_numbers_of_a_name_and_in_no_other() {
+        let of = |numbers: &[&str], value: f64, slope: f64| Sensitivity {
+            parameter: numbers.join(","),
+            numbers: numbers.iter().map(ToString::to_string).collect(),
+            unit: "m".into(),
+            value,
+            slope,
+            elasticity: 0.0,
+        };
+        let all = [of(&["fore.x", "hind.x"], 0.2, 3.0), of(&["shin.x"], -0.2, 5.0), of(&["com.x"], 0.0, 7.0)];
+        let slope = |name: &str, value: f64| slope_in(&all, name, value);
+        assert_eq!(slope("{fore,hind}.x", 0.2), Some(3.0));
+        assert_eq!(slope("{fore,hind}.x", -0.2), Some(-3.0), "towards the other side");
+        assert_eq!(slope("{fore,hind,shin}.x", 0.2), Some(-2.0), "what is of the other sign stays so");
+        assert_eq!(slope("{fore,tail}.x", 0.2), None, "the hind one must stay like the fore one");
+        assert_eq!(slope("{shin,tail}.x", -0.2), Some(5.0), "on some of them nothing depends");
+        assert_eq!([slope("com.x", 0.0), slope("tail.x", 0.2)], [Some(7.0), None]);
+    }
+}

@@ -7,6 +7,7 @@ use piaffe_optimizer::result::Status;
 use piaffe_optimizer::search::local::Task;
 use piaffe_optimizer::search::multi_start::Settings;
 use piaffe_sqp::Control;
+use piaffe_study::difference::Difference;
 use piaffe_study::{Answers, Beyond, Column, Designs, Outcome, Row, Search, Study, Vary};
 use std::collections::BTreeSet;
 
@@ -138,4 +139,32 @@ fn limits_at_each_real_leg_are_those_of_a_robot_that_is_asked_for_alone() {
     let uneven = Study { robot: Robot::new(files).unwrap(), gaits: vec!["amble".into()], ..base };
     let faults = uneven.faults();
     assert!(faults.len() == 1 && faults[0].contains("halves mirror each other"), "{faults:?}");
+}
+
+/// A robot with a foot of some mass and zeros in its file: what differs is explained where it has a slope, and told where not.
+#[test]
+fn differences_follow_from_slopes_in_the_numbers_of_the_file() {
+    let heron = Robot::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/sensitivity/heron")).unwrap();
+    let result = |numbers: &[(&str, f64)]| {
+        let gait = heron.with_all(numbers.iter().copied()).unwrap().gait("walk").unwrap();
+        let mut result = Task { gait: &gait, criterion: Criterion::Torque, speed: 0.12 }.optimize().unwrap();
+        result.examine(&gait, Examination::Quick);
+        result
+    };
+    let base = result(&[]);
+    for (name, value) in [
+        ("links.meta.foot_mass", 0.000306),
+        ("links.meta.length.y", -0.0152),
+        ("joints.hip.damping", 5e-8),
+        ("legs.{left,right}.mount.x", 1e-4),
+    ] {
+        let difference = Difference::new(&base, &result(&[(name, value)])).prediction.unwrap();
+        assert!(difference.without_slope.is_empty(), "{name}: {:?}", difference.without_slope);
+        let parts: Vec<&str> = difference.parts.iter().map(|part| part.parameter.as_str()).collect();
+        assert_eq!(parts, [name]);
+        let off = (difference.mean - difference.difference).abs();
+        assert!(off < 5e-3 * difference.difference.abs(), "{name}: {} {}", difference.mean, difference.difference);
+    }
+    let damped = Difference::new(&base, &result(&[("joints.knee.damping", 1e-7)])).prediction.unwrap();
+    assert_eq!(damped.without_slope, ["joints.knee.damping"], "the file has none");
 }

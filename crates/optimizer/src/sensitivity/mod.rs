@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 /// Slopes of the least criterion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sensitivities {
-    /// In the numbers of the specification and the speed, the largest elasticity first.
+    /// In the numbers that stand in the specification and the speed, the largest elasticity first.
     pub slopes: Vec<Sensitivity>,
     /// Constraints that are active without a price: the optimum may change its active set right here, and then slopes hold to
     /// one side only.
@@ -42,7 +42,7 @@ pub struct Sensitivity {
     #[serde(default)]
     pub numbers: Vec<String>,
     pub unit: String,
-    /// Of the first that is not zero.
+    /// Of the first.
     pub value: f64,
     /// dC*/dp, the criterion's unit per the parameter's.
     pub slope: f64,
