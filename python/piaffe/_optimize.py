@@ -29,7 +29,7 @@ def optimize(
 
     `criterion` is what is least per metre: the work of the actuators ("energy", N) or the squares of their torques ("torque",
     N²·m·s). `set` puts other numbers in the place of the specification's, as `Robot.set` does. With `real_legs` the limits hold at
-    each real leg too. `starts` is their number, a default walk and random ones of `seed`; if it is not given, as many as the optima
+    each real leg too, where the platform rolls. `starts` is their number, a default walk and random ones of `seed`; if it is not given, as many as the optima
     found let expect others. `examine` is how closely to look at an optimum: "none" is its receipt, "quick" its slopes and stability
     too, "full" also the proof between the receipt's instants and the real legs. The answer is the same for any number of `threads`, by default all cores.
 

@@ -51,7 +51,7 @@ def study(
     `designs` are mappings of numbers as in `Robot.set`, or a table of them (of pandas, of pyarrow, or a mapping of columns); a number
     that a design does not name stays as it is. Without designs the robot itself is asked about, and without a `gait` those that never
     leave the ground (where all fly, all). `gait="all"` are those that fly too, whose searches take ten times as long. With `real_legs` the
-    limits hold at each real leg too: `cost` is then the real joints', and `virtual_cost` that without these limits.
+    limits hold at each real leg too, where the platform rolls: `cost` is then the real joints', and `virtual_cost` that without these limits.
     `also` is what is told of an optimum beyond its receipt: "certificate", "slopes", "stability".
 
     A point is sought from the optima of `robot` itself, and from `starts` random starts of `seed` that know nothing of these: 1 by

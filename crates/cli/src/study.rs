@@ -29,8 +29,8 @@ pub struct Arguments {
     /// energy, torque or all; may be given several times.
     #[arg(long, value_parser = PossibleValuesParser::new(["energy", "torque", "all"]), default_value = "all")]
     criterion: Vec<String>,
-    /// Impose contact, torque and speed limits at each real leg, not only at the virtual ones. `cost` is then the real joints', and
-    /// `virtual_cost` that without these limits.
+    /// Impose contact, torque and speed limits at each real leg, not only at the virtual ones, where the platform rolls. `cost` is then
+    /// the real joints', and `virtual_cost` that without these limits.
     #[arg(long)]
     real_legs: bool,
     /// A number of the specification and its values: NAME=FROM..TO:STEP or NAME=A,B,C; may be given several times, for every

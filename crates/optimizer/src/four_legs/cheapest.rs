@@ -3,7 +3,7 @@
 //! Of two feet they are one number, found exactly. Of more feet least torque is a problem of least squares; least energy, and both
 //! within the limits, are cone programs.
 
-use super::cost::Motor;
+use super::cost::{Effort, Motor};
 use super::limits::Room;
 use super::margin::{Choice, SLACK, lowest, on_the_way};
 use super::shares::{Equation, Shares, Squeeze};
@@ -15,6 +15,8 @@ use smallvec::smallvec;
 
 /// What keeps a choice near to equal shares where others cost the same, beside a cost of 1.
 const NEARER: f64 = 1e-9;
+/// Costs, and slopes, that differ by a smaller part are the same.
+const SAME: f64 = 1e-9;
 
 /// By which the least of all shares, and the least of those that keep to the limits, are found.
 pub struct Cheapest<'a> {
@@ -38,13 +40,21 @@ impl Cheapest<'_> {
             (None, 0) => Some([Squeeze::new(), Squeeze::new()]),
             (None, squeezes) => {
                 let free = match criterion {
-                    Criterion::Energy => Program::new(self, criterion, squeezes).solve()?,
+                    Criterion::Energy => self.least_energy(squeezes)?,
                     Criterion::Torque => least_squares(self.motors, squeezes),
                 };
                 let within = self.within(criterion, &free)?;
                 Some([free, within])
             }
         }
+    }
+
+    /// Of all shares, those where no foot pushes against another if that costs no more.
+    fn least_energy(&self, squeezes: usize) -> Option<Squeeze> {
+        let none: Squeeze = smallvec![0.0; squeezes];
+        let found = Program::new(self, Criterion::Energy, squeezes).solve()?;
+        let energy = |s: &[f64]| Effort::new(self.motors, s, s).energy();
+        Some(if energy(&none) <= (1.0 + SAME) * energy(&found) { none } else { found })
     }
 
     fn within(&self, criterion: Criterion, free: &Squeeze) -> Option<Squeeze> {
@@ -180,8 +190,6 @@ fn least_torque(motors: &[Motor]) -> f64 {
 /// That at which Σ |Γ q̇| is least: between the two at which one of the torques vanishes and the slope changes its sign, and of all
 /// that cost the same the nearest to equal, so that it does not jump from instant to instant.
 fn least_energy(motors: &[Motor]) -> f64 {
-    /// Slopes that differ by this share of their sum cancel.
-    const SAME: f64 = 1e-9;
     let slope = |m: &Motor| (m.torque.slope[0] * m.rate).abs();
     let mut zeros: Vec<(f64, f64)> =
         motors.iter().filter(|m| slope(m) > 0.0).map(|m| (-m.torque.at / m.torque.slope[0], slope(m))).collect();
@@ -200,7 +208,6 @@ fn least_energy(motors: &[Motor]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::cost::Effort;
     use super::super::limits::Affine;
     use super::*;
 

@@ -27,10 +27,13 @@ pub type RealCosts = Ways<Costs>;
 /// What the joints do at an instant.
 #[derive(Clone, Debug)]
 pub struct Effort {
-    /// Γ q̇ of each joint, or of all together, W.
+    /// Γ q̇ of each joint, W.
     pub powers: Vec<f64>,
     /// n Σ Γ², N²·m².
     pub torque: f64,
+    /// Whether powers may jump from one joint to another until the next instant, as those of the least energy of many feet do. What
+    /// they cost together does not.
+    pub jumps: bool,
 }
 
 /// The torque of a real joint over the choice of shares.
@@ -49,13 +52,13 @@ impl Effort {
         Effort {
             powers: motors.iter().map(|motor| motor.torque.value(for_energy) * motor.rate).collect(),
             torque: motors.iter().map(square).sum(),
+            jumps: false,
         }
     }
 
-    /// With one power for all joints, Σ |Γ q̇|. The cheapest shares of many feet jump from one joint to another; what they cost
-    /// together does not.
-    pub fn together(self) -> Effort {
-        Effort { powers: vec![self.powers.iter().map(|power| power.abs()).sum()], ..self }
+    /// Σ |Γ q̇|, W.
+    pub fn energy(&self) -> f64 {
+        self.powers.iter().map(|power| power.abs()).sum()
     }
 }
 
@@ -81,8 +84,12 @@ pub fn costs(lift: &Lift, effort: fn(&Instant) -> &Effort) -> Costs {
             points
         };
         work.torque += integral(&over_time(&|effort| effort.torque), |parabola, to| parabola.integral(to));
-        for joint in 0..instants.first().map_or(0, |i| effort(i).powers.len()) {
-            work.energy += integral(&over_time(&|effort| effort.powers[joint]), Parabola::magnitude);
+        if instants.iter().any(|i| effort(i).jumps) {
+            work.energy += integral(&over_time(&Effort::energy), |parabola, to| parabola.integral(to));
+        } else {
+            for joint in 0..instants.first().map_or(0, |i| effort(i).powers.len()) {
+                work.energy += integral(&over_time(&|effort| effort.powers[joint]), Parabola::magnitude);
+            }
         }
     };
     for phase in lift.instants.chunk_by(|a, b| a.phase == b.phase) {

@@ -189,22 +189,26 @@ impl Legs<'_> {
         let cheapest = |criterion| cheapest.shares(criterion).ok_or_else(unsolved);
         let [[energy, energy_within], [torque, torque_within]] =
             [cheapest(Criterion::Energy)?, cheapest(Criterion::Torque)?];
-        let together = |effort: Effort| if stance.len() > 2 { effort.together() } else { effort };
+        // Of two feet the share that costs least keeps near to equal; of more feet it may jump where it is not the equal one.
+        let jumps = |s: &[f64]| s.len() > 1 && s.iter().any(|s| *s != 0.0);
         let efforts = Ways {
             virtual_legs: Effort {
                 powers: m.torque.iter().zip(&m.qd).map(|(torque, rate)| torque * rate).collect(),
                 torque: m.torque.iter().map(|torque| torque * torque).sum(),
+                jumps: false,
             },
-            least: together(Effort::new(&motors, &energy, &torque)),
-            within_limits: together(Effort::new(&motors, &energy_within, &torque_within)),
+            least: Effort { jumps: jumps(&energy), ..Effort::new(&motors, &energy, &torque) },
+            within_limits: Effort {
+                jumps: jumps(&energy_within),
+                ..Effort::new(&motors, &energy_within, &torque_within)
+            },
             proportional: Effort::new(&motors, &proportional, &proportional),
         };
         let best = choice.best;
-        let given = |s: &[f64]| Effort::new(&motors, s, s);
-        let (s, effort) = match sharing {
-            Sharing::MostRoom => (&best.s, given(&best.s)),
-            Sharing::LeastCost(Criterion::Energy) => (&energy_within, together(given(&energy_within))),
-            Sharing::LeastCost(Criterion::Torque) => (&torque_within, given(&torque_within)),
+        let (s, jumps) = match sharing {
+            Sharing::MostRoom => (&best.s, false),
+            Sharing::LeastCost(Criterion::Energy) => (&energy_within, jumps(&energy_within)),
+            Sharing::LeastCost(Criterion::Torque) => (&torque_within, false),
         };
 
         let mut equal_lack = less(&demand, &columns, &equal);
@@ -222,7 +226,7 @@ impl Legs<'_> {
             stance,
             torque,
             room: lowest(&rooms, s),
-            effort,
+            effort: Effort { jumps, ..Effort::new(&motors, s, s) },
             margin: best.margin,
             binding: best.binding,
             lack,

@@ -79,7 +79,11 @@ impl RealLegs {
         };
         let (real, without) = (cost.of(criterion), self.costs.virtual_legs.of(criterion));
         let more = real / without - 1.0;
-        let beside = if more.abs() < SAME_COST { "as".into() } else { format!("{} % more than", percent(more)) };
+        let beside = match more {
+            more if more.abs() < SAME_COST => "as".into(),
+            more if more < 0.0 => format!("{} % less than", percent(-more)),
+            more => format!("{} % more than", percent(more)),
+        };
         let (name, unit, real) =
             (criterion.name(), criterion.unit(), number(self.as_stated(real, criterion, result, d)));
         format!("{name} on the real joints {how}{real} {unit}, {beside} at the virtual legs'")
