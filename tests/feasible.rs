@@ -1,6 +1,7 @@
 //! Infeasible is said of motions, never of a criterion; and what is said of speeds holds when they are asked for.
 
 use piaffe::altered::Altered;
+use piaffe::audit::{Audit, Verdict};
 use piaffe::cycle::AT_REST;
 use piaffe::examine::Examination;
 use piaffe::gaits::GAITS;
@@ -188,6 +189,12 @@ fn limits_that_contradict_the_robot_need_no_search() {
     assert_eq!((result.status, result.search.effort.starts), (Status::Infeasible, 0));
     assert!(result.message.contains("= 136.0") && result.message.contains("135.9 N"), "{}", result.message);
     assert_eq!(nearest_speed(&heavy, Criterion::Torque, 0.6, &FEW), None);
+    // So it is no statement about a search, and who says otherwise is refuted.
+    let audit = Audit::of(&result, &[&heavy]);
+    let verdict = |entry: &str| audit.statements.iter().find(|s| s.entry == entry).map(|s| s.verdict);
+    assert_eq!((verdict("status"), verdict("message")), (Some(Verdict::Confirmed), Some(Verdict::Confirmed)));
+    let unsure = GaitResult { status: Status::NotConverged, ..result.clone() };
+    assert!(audit.is_confirmed() && !Audit::of(&unsure, &[&heavy]).is_confirmed());
     // Who flies pushes harder while it stands: as much as flights may last and stances must.
     let run = least("running_trot", 1.3);
     assert_eq!(optimize(&run, Criterion::Torque, 1.0, &FEW).status, Status::Optimal);

@@ -11,6 +11,7 @@ use piaffe::interpreter::Interpreted;
 use piaffe::model::{Gait, Lever};
 use piaffe::motion::{Criterion, Motion};
 use piaffe::result::{GaitResult, Status};
+use piaffe::search::bend::Bend;
 use piaffe::search::local::{Local, Task};
 use piaffe::search::multi_start::{Settings, search};
 use piaffe::sensitivity::sensitivities;
@@ -211,4 +212,23 @@ fn slopes_in_friction_are_those_of_optima_of_other_robots() {
             }
         }
     }
+}
+
+/// Least torque has a bend where a joint with dry friction comes to rest just at the end of a phase. Where a search ends there, it says so.
+#[test]
+fn a_search_that_ends_at_a_bend_says_so() {
+    let run = Robot::read(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/friction/cat")).unwrap().gait("run").unwrap();
+    let settings = Settings { starts: Some(4), seed: 1, examination: Examination::None };
+    let found = search(&run, Criterion::Torque, 1.1, &settings, &|_| {});
+    let result = GaitResult::new(&run, Criterion::Torque, 1.1, &found, &settings, || 0.0);
+    assert_eq!(result.status, Status::NotConverged);
+    assert!(result.message.contains("may be because of its dry friction"), "{}", result.message);
+    assert!(result.message.contains("k1 comes to rest just at the end of phase 2"), "{}", result.message);
+    // Least energy has none there, nor has who rubs less dryly.
+    let motion = &found.attempt.unwrap().motion;
+    assert!(Bend::of(run.description(), Criterion::Torque, motion).is_some());
+    assert_eq!(Bend::of(run.description(), Criterion::Energy, motion), None);
+    let mut slick = run.description().clone();
+    slick.joints.to_mut().iter_mut().for_each(|joint| joint.coulomb = 0.0);
+    assert_eq!(Bend::of(&slick, Criterion::Torque, motion), None);
 }

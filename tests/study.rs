@@ -220,6 +220,59 @@ fn what_is_least_in_different_criteria_has_no_common_slopes() {
     assert!(difference["slopes"].as_array().unwrap().is_empty() && difference["prediction"].is_null());
 }
 
+/// A copy of the shipped robot with its trot alone, as it is and with other words in it.
+fn reworded(folder: &Path, name: &str, words: &[(&str, &str)]) {
+    let (robot, trot) = (folder.join(name), format!("{SHIPPED}/gaits/trot.toml"));
+    std::fs::create_dir_all(robot.join("gaits")).unwrap();
+    std::fs::copy(format!("{SHIPPED}/robot.toml"), robot.join("robot.toml")).unwrap();
+    let text = words.iter().fold(std::fs::read_to_string(trot).unwrap(), |text, (from, to)| {
+        assert!(text.contains(from), "{from}");
+        text.replacen(from, to, 1)
+    });
+    std::fs::write(robot.join("gaits/trot.toml"), text).unwrap();
+}
+
+/// What differs between two questions is named, whatever it is, and what does not is not.
+#[test]
+fn what_differs_between_questions_is_named_and_nothing_else() {
+    let folder = tempdir().unwrap();
+    reworded(folder.path(), "one", &[]);
+    // Said as it is meant where it is not said, and in other words.
+    let defaults = "polynomial_order = 4\nvirtual_legs = [ ['fore_left',";
+    let said = [("virtual_legs = [[\"fore_left\",", defaults), ("[limits] ", "[limits]\nbody_clearance = 0 ")];
+    reworded(folder.path(), "same", &said);
+    reworded(folder.path(), "other", &[("\"fore_left\", \"hind_right\"", "\"hind_right\", \"fore_left\"")]);
+    let asked = "optimize trot --speed 0.6 --starts 2 --quiet";
+    for (name, options) in [
+        ("one", "--robot one"),
+        ("same", "--robot same"),
+        ("other", "--robot other"),
+        ("legs", "--robot one --real-legs"),
+        ("seed", "--robot one --seed 2"),
+    ] {
+        succeeds(folder.path(), &format!("{asked} {options} --json {name}.json"));
+    }
+    let same = "numbers         the same in both specifications".to_string();
+    let question = |b: &str| {
+        let told = succeeds(folder.path(), &format!("diff one.json {b}.json"));
+        let lines = told.lines().skip_while(|line| !line.starts_with("numbers"));
+        let asked = |line: &&str| ["explained", "in all", "phases"].iter().all(|answer| !line.starts_with(answer));
+        lines.take_while(asked).map(String::from).collect::<Vec<_>>()
+    };
+    assert_eq!(question("one"), [same.clone()]);
+    assert_eq!(question("same"), [same.clone()]);
+    let words = "words           virtual_legs: [[\"fore_left\", \"hind_right\"], [\"fore_right\", \"hind_left\"]] → \
+                 [[\"hind_right\", \"fore_left\"], [\"fore_right\", \"hind_left\"]]";
+    assert_eq!(question("other")[..2], [same.clone(), words.to_string()]);
+    assert_eq!(question("seed"), [same.clone(), "search          2 starts of seed 1 → 2 starts of seed 2".into()]);
+    let limits = "limits hold     at the virtual legs only → at each real leg".to_string();
+    assert_eq!(question("legs"), [same, limits]);
+    // One robot is not two on a page because its limits hold elsewhere.
+    succeeds(folder.path(), "report one.json legs.json --out page");
+    let page = std::fs::read_to_string(folder.path().join("page/index.html")).unwrap();
+    assert!(page.contains("Trot at real legs") && !page.contains("robot 1"), "the same robot has two names");
+}
+
 /// What the limits of each real leg cost each robot.
 #[test]
 fn limits_at_each_real_leg_are_in_the_table() {

@@ -146,7 +146,7 @@ class Dynamics:
             "x": self.positions + self.coordinates,
             "xd": self.positions + self.coordinates,
         }
-        arrays = {name: np.asarray(values, dtype=np.float64) for name, values in inputs.items()}
+        arrays = {name: _real(name, values) for name, values in inputs.items()}
         for name, array in arrays.items():
             names = widths[name]
             if array.ndim == 0 or array.shape[-1] != len(names):
@@ -159,3 +159,13 @@ class Dynamics:
         rows = [np.broadcast_to(array, (*states, array.shape[-1])).tobytes() for array in arrays.values()]
         blocks = kernel(*rows)
         return [np.frombuffer(block).reshape(states + shape) for block, shape in zip(blocks, shapes)]
+
+
+def _real(name: str, values: ArrayLike) -> Numbers:
+    """An array of real numbers: what is none is not made one."""
+    import numpy as np
+
+    array = np.asarray(values)
+    if array.size and not (np.issubdtype(array.dtype, np.integer) or np.issubdtype(array.dtype, np.floating)):
+        raise TypeError(f"`{name}` is an array of {array.dtype}: give real numbers")
+    return array.astype(np.float64, copy=False)

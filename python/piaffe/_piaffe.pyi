@@ -73,8 +73,8 @@ class Robot:
         several, a `/` at the end all joints below too. `foot` names links that touch the ground, or gives each the point of it
         that does, m. `effort` (N·m), `velocity` (rad/s), `gear` (motor turns per turn of the joint) and `rotor` (kg·m² at the
         motor) are numbers for all joints that have none, or by joint. `range` has stops by joint, rad. `forward` and `up` are
-        axes of the root link, such as "-y". Legs that differ by no more than the share `alike` are made alike. `mend` takes
-        the nearest possible inertia where no body has the one of the file. With `tried`, the gaits are those that the robot
+        axes of the root link, such as "-y". Legs that differ by no more than the share `alike` are made alike. `mend` takes the nearest possible
+        inertia also where the file would be refused for one that no body has. With `tried`, the gaits are those that the robot
         can do, which takes seconds; else those that legs like these have.
         """
     @property
@@ -94,7 +94,11 @@ class Robot:
         """The specification: paths in the robot's folder, and their texts."""
     @property
     def numbers(self) -> dict[str, float]:
-        """All numbers of the specification, by the names with which `set` changes them."""
+        """The numbers of the specification, by the names with which `set` changes them. Those that are not the same in all gaits are
+        not the robot's: `differing` has them, and `Gait.numbers` those of one gait."""
+    @property
+    def differing(self) -> dict[str, dict[str, float]]:
+        """Numbers that are not the same in all gaits that have them: each with its value by gait. `set` gives all gaits one."""
     def unknown(self, names: Sequence[str]) -> list[str]:
         """What is wrong with these names, if they are to be those of numbers."""
     def gait(self, name: str) -> Gait:
@@ -119,6 +123,9 @@ class Gait:
     def robot(self) -> Robot: ...
     def set(self, numbers: Mapping[str, float]) -> Gait:
         """The same gait of the robot with other numbers: `Robot.set`."""
+    @property
+    def numbers(self) -> dict[str, float]:
+        """The numbers of its specification, the robot's and its own, by the names with which `set` changes them."""
     @property
     def parameters(self) -> dict[str, tuple[float, str]]:
         """The numbers on which it depends, with their units. Those that must stay alike have one name, what differs in braces."""

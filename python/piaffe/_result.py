@@ -103,7 +103,7 @@ class Sensitivity:
 
 @dataclass(frozen=True)
 class Stability:
-    """What a push is multiplied by, from step to step; it dies out where that is below 1. None where there is no such number."""
+    """What a push is multiplied by in a whole step (two half steps of a mirrored gait); it dies out where that is below 1. None where there is no such number."""
 
     by_clock: float
     """With joints that follow the time, whenever a foot lands."""
@@ -231,7 +231,7 @@ class Result:
 
     @property
     def step_length(self) -> Optional[float]:
-        """Travel in these phases, m."""
+        """Travel in these phases, m: of a mirrored gait that of a half step."""
         return self._entries["step_length"]  # type: ignore[no-any-return]
 
     @property

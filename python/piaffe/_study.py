@@ -68,8 +68,11 @@ def study(
 
     Raises `Error` where there is no such question, before anything is computed.
     """
-    names, rows = _designs(robot, designs)
     gaits, criteria, extras = _gaits(robot, gait), _list(criterion), _list(also)
+    names, rows = _designs(robot, designs, gaits)
+    if executor is not None and not callable(executor) and not callable(getattr(executor, "submit", None)):
+        expected = "give one with `submit(function, *arguments)`, a function that makes one, or none for all cores of this machine"
+        raise TypeError(f"`executor` is {executor!r}: {expected}")
     speeds = [speed] if isinstance(speed, (int, float)) else list(speed)
     question = Question(robot, names, rows, gaits, criteria, speeds, real_legs, starts, seed, extras)
     return Study(question, executor, chunk, in_flight, retries, None if journal is None else Path(journal))
@@ -85,7 +88,7 @@ def _list(given: Union[str, Iterable[str]]) -> List[str]:
     return [given] if isinstance(given, str) else list(given)
 
 
-def _designs(robot: Robot, designs: Any) -> Tuple[List[str], List[List[float]]]:
+def _designs(robot: Robot, designs: Any, gaits: Sequence[str]) -> Tuple[List[str], List[List[float]]]:
     """Names and numbers of a table of any kind."""
     if designs is None:
         return [], [[]]
@@ -110,6 +113,14 @@ def _designs(robot: Robot, designs: Any) -> Tuple[List[str], List[List[float]]]:
     ]
     known = robot.numbers
     faults += robot.unknown(names)
+    for name, values in robot.differing.items():
+        left = [k for k, design in enumerate(table) if name not in design] if name in names else []
+        asked = {gait: value for gait, value in values.items() if gait in gaits}
+        if len(set(asked.values())) == 1:
+            known[name] = next(iter(asked.values()))
+        elif left:
+            each = ", ".join(f"{value!r} in {gait}" for gait, value in asked.items() or values.items())
+            faults.append(f"design {left[0]}: `{name}` is not the same in all gaits ({each}): give it, or ask about one gait")
     if faults:
         raise Error("\n".join(faults[:20]) + (f"\nand {len(faults) - 20} more" if len(faults) > 20 else ""))
     return names, [[float(design[name] if name in design else known[name]) for name in names] for design in table]

@@ -6,7 +6,7 @@ use piaffe::import::{Direction, FootPoint, Lock, Options, Setting, Stops, import
 use piaffe::interpreter::{Interpreted, Unloadable};
 use piaffe::model::Gait as _;
 use piaffe::model::digits::digits;
-use piaffe_codegen::{Changes, Load, RobotFiles, SpecFile};
+use piaffe_codegen::{Changes, Load, RobotFiles, SpecFile, spec};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use pyo3::types::PyMapping;
@@ -107,7 +107,7 @@ impl Robot {
     /// m. `effort` (N·m), `velocity` (rad/s), `gear` (motor turns per turn of the joint) and `rotor` (kg·m² at the motor) are
     /// numbers for all joints that have none, or by joint. `range` has stops by joint, rad. `forward` and `up` are axes of the root
     /// link, such as "-y". Legs that differ by no more than the share `alike` are made alike. `mend` takes the nearest possible
-    /// inertia where no body has the one of the file. With `tried`, the gaits are those that the robot can do, which takes seconds;
+    /// inertia also where the file would be refused for one that no body has. With `tried`, the gaits are those that the robot can do, which takes seconds;
     /// else those that legs like these have.
     #[staticmethod]
     #[pyo3(signature = (
@@ -204,10 +204,34 @@ impl Robot {
         gaits.chain([("robot.toml".into(), robot)]).collect()
     }
 
-    /// All numbers of the specification, by the names with which `set` changes them.
+    /// The numbers of the specification, by the names with which `set` changes them. Those that are not the same in all gaits are not
+    /// the robot's: `differing` has them, and `Gait.numbers` those of one gait.
     #[getter]
     fn numbers(&self) -> BTreeMap<String, f64> {
-        self.robot.files().numbers().into_iter().collect()
+        let differing = self.differing();
+        let all = self.robot.files().numbers().into_iter();
+        all.filter(|(name, _)| !differing.contains_key(name)).collect()
+    }
+
+    /// Numbers that are not the same in all gaits that have them: each with its value by gait. `set` gives all gaits one.
+    #[getter]
+    fn differing(&self) -> BTreeMap<String, BTreeMap<String, f64>> {
+        let mut by_name: BTreeMap<String, BTreeMap<String, f64>> = BTreeMap::new();
+        let (_, gaits) = self.texts();
+        for (gait, text) in &gaits {
+            for number in spec::numbers(text) {
+                by_name.entry(number.name).or_default().insert(gait.clone(), number.value);
+            }
+        }
+        for (name, values) in &mut by_name {
+            // What a gait does not say, it means.
+            let Some(default) = spec::default_of(name).and_then(|default| default.parse().ok()) else { continue };
+            for gait in gaits.keys() {
+                values.entry(gait.clone()).or_insert(default);
+            }
+        }
+        by_name.retain(|_, values| values.values().any(|value| values.values().next() != Some(value)));
+        by_name
     }
 
     /// What is wrong with these names, if they are to be those of numbers.
@@ -294,6 +318,14 @@ impl Gait {
     /// The same gait of the robot with other numbers: `Robot.set`.
     fn set(&self, py: Python<'_>, numbers: BTreeMap<String, f64>) -> PyResult<Gait> {
         self.robot.set(numbers)?.gait(py, &self.name)
+    }
+
+    /// The numbers of its specification, the robot's and its own, by the names with which `set` changes them.
+    #[getter]
+    fn numbers(&self) -> BTreeMap<String, f64> {
+        let (robot, gaits) = self.robot.texts();
+        let own = gaits.get(&self.name).copied().unwrap_or_default();
+        [robot, own].into_iter().flat_map(spec::numbers).map(|number| (number.name, number.value)).collect()
     }
 
     /// The numbers on which it depends, with their units. Those that must stay alike have one name, what differs in braces.

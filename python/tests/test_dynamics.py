@@ -68,6 +68,12 @@ def test_jacobians_are_those_of_differences(gait: piaffe.Gait) -> None:
                 np.testing.assert_allclose(stated, found, rtol=1e-4, atol=1e-4 * (1 + np.abs(getattr(base, name)).max(initial=0)))
 
 
+@pytest.mark.parametrize("values", [[1j, 0, 0, 0], [True] * 4, ["0"] * 4, [None] * 4, np.zeros(4, complex), np.zeros(4, object)])
+def test_arrays_of_no_real_numbers_are_refused(trot: piaffe.Gait, values: Any) -> None:
+    with pytest.raises(TypeError, match="`q` is an array of .*: give real numbers"):
+        piaffe.dynamics(trot).inertia(values)
+
+
 def test_arrays_are_broadcast(trot: piaffe.Gait) -> None:
     dynamics = piaffe.dynamics(trot)
     q, qd = RANDOM.normal(size=(5, 1, 4)), RANDOM.normal(size=(3, 4))

@@ -73,6 +73,20 @@ def test_numbers_are_set_together(quadruped: piaffe.Robot) -> None:
         quadruped.set({low: 3.0, high: 2.0})
 
 
+def test_a_number_that_is_not_the_same_in_all_gaits_is_none_of_the_robot(quadruped: piaffe.Robot) -> None:
+    clearance, height = "limits.swing_clearance", "limits.min_platform_height"
+    texts = {name: quadruped.files[f"gaits/{name}.toml"] for name in ("trot", "amble")}
+    high = texts["amble"].replace("swing_clearance = 0.005", "swing_clearance = 0.006\nmin_platform_height = 0.1")
+    robot = piaffe.Robot(quadruped.files["robot.toml"], {**texts, "amble": high})
+    # What a gait leaves out it means.
+    assert robot.differing == {clearance: {"amble": 0.006, "trot": 0.005}, height: {"amble": 0.1, "trot": 0.0}}
+    assert clearance not in robot.numbers and robot.numbers["limits.friction"] == 1.0
+    assert [robot.gait(name).numbers[clearance] for name in ("amble", "trot")] == [0.006, 0.005]
+    one = robot.set({clearance: 0.004, height: 0.05})
+    assert not one.differing and one.numbers[clearance] == 0.004
+    assert one.numbers["gravity"] == one.gait("trot").numbers["gravity"]
+
+
 def test_a_load_is_a_part_of_the_platform(quadruped: piaffe.Robot) -> None:
     loaded = quadruped.loaded(1.0, (0.0, 0.0, 0.0))
     assert loaded.numbers["links.platform.mass"] == pytest.approx(quadruped.numbers["links.platform.mass"] + 1.0)

@@ -106,6 +106,17 @@ def test_a_number_that_a_design_does_not_name_stays(quadruped: piaffe.Robot) -> 
     assert alone["cost"] == pytest.approx(piaffe.optimize(quadruped.gait("trot"), 0.5).cost, rel=1e-6)
 
 
+def test_a_number_that_differs_among_gaits_does_not_stay_as_one(quadruped: piaffe.Robot) -> None:
+    clearance = "limits.swing_clearance"
+    texts = {name: quadruped.files[f"gaits/{name}.toml"] for name in ("trot", "amble")}
+    trot = texts["trot"].replace("swing_clearance = 0.005", "swing_clearance = 0.006")
+    robot = piaffe.Robot(quadruped.files["robot.toml"], {**texts, "trot": trot})
+    designs = [{clearance: 0.004}, {"links.thigh.mass": 1.5}]
+    with pytest.raises(piaffe.Error, match="design 1: `limits.swing_clearance` .* 0.005 in amble, 0.006 in trot"):
+        piaffe.study(robot, designs, gait="all", speed=0.5)
+    assert piaffe.study(robot, designs, gait="trot", speed=0.5).table().column(clearance) == [0.004, 0.006]
+
+
 def test_tables_of_all_kinds_are_designs(quadruped: piaffe.Robot) -> None:
     pandas, pyarrow = pytest.importorskip("pandas"), pytest.importorskip("pyarrow")
     designs = [{"links.thigh.mass": 1.5, "gravity": 9.8}, {"links.thigh.mass": 1.7, "gravity": 9.7}]
@@ -262,6 +273,9 @@ def test_what_cannot_be_asked_is_told_before_anything_is_computed(quadruped: pia
         ask(quadruped, also="proof")
     with pytest.raises(piaffe.Error, match="there is no design"):
         ask(quadruped, [])
+    for none in (3, "threads", [1]):
+        with pytest.raises(TypeError, match="`executor` is .*: give one with `submit"):
+            ask(quadruped, executor=none)
     with pytest.raises(piaffe.Error, match="different lengths"):
         ask(quadruped, {"gravity": [9.8, 9.7], "links.thigh.mass": [1.0]})
 

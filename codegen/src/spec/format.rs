@@ -310,17 +310,35 @@ pub(super) static LIMITS: Table = Table {
 
 /// Whether a name leads to a number that a file may leave out: `limits.min_platform_height`, `links.shin.foot_mass`.
 pub(super) fn may_be_absent(name: &str) -> bool {
-    let parts: Vec<&str> = name.split('.').collect();
-    [&ROBOT, &GAIT].into_iter().any(|table| is_optional(table, &parts))
+    key_of(name).is_some_and(|(key, within)| matches!(key.kind, Number(_)) && within == 0 && key.default.is_some())
 }
 
-fn is_optional(table: &'static Table, parts: &[&str]) -> bool {
-    let [first, rest @ ..] = parts else { return false };
-    let Some(key) = table.keys.iter().find(|key| key.name == *first) else { return false };
+/// What a file means that says nothing under a name, as it would be written: `limits.body_clearance`, `joints.knee.axis`. `None` where
+/// absence is no value.
+pub fn default_of(name: &str) -> Option<&'static str> {
+    let (key, within) = key_of(name)?;
+    let default = key.default?;
+    match (&key.kind, within) {
+        // No foot is a foot of no mass.
+        (Number(_), 0) => Some(if default.parse::<f64>().is_ok() { default } else { "0" }),
+        (Vector(_), 1) => Some("0"),
+        (Kind::Order(_) | Choice(_), 0) => Some(default),
+        _ => None,
+    }
+}
+
+/// The key to which a name leads, and how many parts of the name are left, within its value.
+fn key_of(name: &str) -> Option<(&'static Key, usize)> {
+    let parts: Vec<&str> = name.split('.').collect();
+    [&ROBOT, &GAIT].into_iter().find_map(|table| key_in(table, &parts))
+}
+
+fn key_in(table: &'static Table, parts: &[&str]) -> Option<(&'static Key, usize)> {
+    let [first, rest @ ..] = parts else { return None };
+    let key = table.keys.iter().find(|key| key.name == *first)?;
     match (&key.kind, rest) {
-        (Number(_), []) => key.default.is_some(),
-        (Kind::Table(table), rest) => is_optional(table, rest),
-        (Map(tables), [_, rest @ ..]) => tables.iter().any(|table| is_optional(table, rest)),
-        _ => false,
+        (Kind::Table(table), [_, ..]) => key_in(table, rest),
+        (Map(tables), [_, rest @ ..]) if !rest.is_empty() => tables.iter().find_map(|table| key_in(table, rest)),
+        _ => Some((key, rest.len())),
     }
 }

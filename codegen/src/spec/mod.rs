@@ -6,7 +6,7 @@
 //! satisfy beyond its form is checked in `bodies.rs`, `tree.rs`, `chain.rs` (robot), `pairing.rs`, `mirror.rs`,
 //! `coordinates.rs` and `phases.rs` (gait).
 //!
-//! `set.rs` changes numbers where they stand in the files, `load.rs` puts a load on the platform.
+//! `set.rs` changes numbers where they stand in the files, `words.rs` has what is no number, `load.rs` puts a load on the platform.
 //!
 //! What gaits make of legs is in `locked.rs` (joints held still) and `as_one.rs` (legs that move as one).
 //!
@@ -45,12 +45,14 @@ mod syntax;
 mod tree;
 mod types;
 mod view;
+mod words;
 
 #[cfg(test)]
 mod tests;
 
 pub use code::Code;
 pub use diagnostic::{Diagnostic, Label, Source, Span};
+pub use format::default_of;
 pub use gait::{gait_mistakes, parse_gait};
 pub use load::load;
 pub use locked::Tilted;
@@ -59,3 +61,4 @@ pub use robot::{RobotFile, parse_robot};
 pub use schema::{gait_schema, robot_schema};
 pub use set::{alternatives, is_duration_on_a_foot, number, numbers, set, set_all, unknown};
 pub use types::*;
+pub use words::{Word, words};

@@ -3,7 +3,7 @@
 use super::digits::decimal;
 use super::{document, input, output};
 use piaffe_model::digits::digits;
-use piaffe_optimizer::result::GaitResult;
+use piaffe_optimizer::result::{GaitResult, SearchEntry};
 use piaffe_study::difference::{Changed, Difference, Pair, Prediction};
 use std::io::{self, Write};
 use std::path::Path;
@@ -48,20 +48,7 @@ fn tell(names: &Pair<String>, results: &Pair<GaitResult>, d: &Difference) -> io:
             _ => writeln!(out, "   B costs {} % less than A", decimal(-percent, 2))?,
         }
     }
-    if !d.specified {
-        writeln!(out, "numbers         not known: not both say what robot they are of")?;
-    } else if d.numbers.is_empty() {
-        writeln!(out, "numbers         the same in both specifications")?;
-    }
-    for (k, number) in d.numbers.iter().enumerate() {
-        let value = |value: Option<f64>| value.map_or("none".into(), |value| value.to_string());
-        let head = if k == 0 { "numbers" } else { "" };
-        let Pair { a, b } = number.values;
-        writeln!(out, "{head:15} {}: {} → {}", number.name, value(a), value(b))?;
-    }
-    if d.other_specification {
-        writeln!(out, "                something else than numbers differs between the specifications")?;
-    }
+    asked(&mut out, d)?;
     if let Some(prediction) = &d.prediction {
         predicted(&mut out, prediction, &d.numbers, results.a.criterion.unit())?;
     }
@@ -90,8 +77,59 @@ fn tell(names: &Pair<String>, results: &Pair<GaitResult>, d: &Difference) -> io:
     Ok(())
 }
 
+/// What differs between the questions.
+fn asked(out: &mut impl Write, d: &Difference) -> io::Result<()> {
+    if !d.specified {
+        writeln!(out, "numbers         not known: not both say what robot they are of")?;
+    } else if d.numbers.is_empty() {
+        writeln!(out, "numbers         the same in both specifications")?;
+    }
+    entries(out, "numbers", &d.numbers, |value| value.to_string())?;
+    entries(out, "words", &d.words, Clone::clone)?;
+    let at_real_legs = d.limits_at_real_legs.a != d.limits_at_real_legs.b;
+    let same = d.numbers.is_empty() && d.words.is_empty();
+    match d.same_gait {
+        true if !same => {
+            writeln!(out, "{:15} none of that is of matter to the gait: both are derived as the same", "")?
+        }
+        false if d.specified && same && !at_real_legs => {
+            writeln!(out, "{:15} their fingerprints differ, and nothing here says why", "")?;
+        }
+        _ => {}
+    }
+    if at_real_legs {
+        let hold = |real_legs| if real_legs { "at each real leg" } else { "at the virtual legs only" };
+        let Pair { a, b } = d.limits_at_real_legs;
+        writeln!(out, "limits hold     {} → {}", hold(a), hold(b))?;
+    }
+    let Pair { a, b } = &d.search;
+    if (a.effort.starts, a.seed) != (b.effort.starts, b.seed) {
+        let (a, b) = (searched(a), searched(b));
+        writeln!(out, "search          {a} → {b}")?;
+    }
+    let Pair { a, b } = &d.version;
+    if a != b {
+        writeln!(out, "version         {a} → {b}")?;
+    }
+    Ok(())
+}
+
+/// Entries of the specifications that differ.
+fn entries<T>(out: &mut impl Write, head: &str, list: &[Changed<T>], shown: impl Fn(&T) -> String) -> io::Result<()> {
+    for (k, entry) in list.iter().enumerate() {
+        let value = |value: &Option<T>| value.as_ref().map_or("not given".into(), &shown);
+        let head = if k == 0 { head } else { "" };
+        writeln!(out, "{head:15} {}: {} → {}", entry.name, value(&entry.values.a), value(&entry.values.b))?;
+    }
+    Ok(())
+}
+
+fn searched(search: &SearchEntry) -> String {
+    format!("{} starts of seed {}", search.effort.starts, search.seed)
+}
+
 /// Which is better, and why.
-fn predicted(out: &mut impl Write, p: &Prediction, numbers: &[Changed], unit: &str) -> io::Result<()> {
+fn predicted(out: &mut impl Write, p: &Prediction, numbers: &[Changed<f64>], unit: &str) -> io::Result<()> {
     for (k, part) in p.parts.iter().enumerate() {
         let head = if k == 0 { "explained by" } else { "" };
         let (name, change) = (&part.parameter, decimal(part.change, 4));
@@ -111,7 +149,7 @@ fn predicted(out: &mut impl Write, p: &Prediction, numbers: &[Changed], unit: &s
 }
 
 /// Numbers that differ and have no slope; friction that is none has none.
-fn without_slope(p: &Prediction, numbers: &[Changed]) -> Vec<String> {
+fn without_slope(p: &Prediction, numbers: &[Changed<f64>]) -> Vec<String> {
     let with_reason = |name: &String| {
         let values = numbers.iter().find(|number| number.name == *name).map(|number| number.values);
         let nothing = |value: Option<f64>| value.unwrap_or(0.0) == 0.0;

@@ -46,7 +46,7 @@ pub struct Arguments {
     /// Legs whose numbers differ by no more than this share are made alike.
     #[arg(long, value_name = "SHARE", default_value_t = 1e-3, value_parser = share)]
     alike: f64,
-    /// Take the nearest possible inertia where no body has the one of the file.
+    /// Take the nearest possible inertia also where the file would be refused for one that no body has.
     #[arg(long)]
     mend: bool,
     /// Write gaits that legs like these have without a trial whether the robot can do them.

@@ -5,7 +5,7 @@ use super::{input, output, robots, whole};
 use anyhow::{Context, bail};
 use piaffe_optimizer::result::GaitResult;
 use piaffe_report::{Extremes, Record, Report};
-use piaffe_study::difference::changed;
+use piaffe_study::difference::{changed, same_robot};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -113,11 +113,11 @@ fn designs<'r>(results: impl Iterator<Item = &'r GaitResult>) -> Vec<Option<Stri
         let alike = results.iter().filter(|r| (&r.gait, &r.robot) == (&result.gait, &result.robot));
         let mut robots: Vec<&GaitResult> = Vec::new();
         for other in alike {
-            if robots.iter().all(|known| known.fingerprint != other.fingerprint) {
+            if robots.iter().all(|known| !same_robot(known, other)) {
                 robots.push(other);
             }
         }
-        let place = robots.iter().position(|robot| robot.fingerprint == result.fingerprint)?;
+        let place = robots.iter().position(|robot| same_robot(robot, result))?;
         let mut names: Vec<String> = Vec::new();
         for other in robots.iter().filter_map(|robot| robot.specification.as_ref()) {
             let changed = result.specification.as_ref().map_or(Vec::new(), |own| changed(own, other));

@@ -4,7 +4,7 @@ use super::digits::{at_least, decimal};
 use super::peaks;
 use piaffe_model::digits::digits;
 use piaffe_model::motion::Criterion;
-use piaffe_model::{Description, Mode};
+use piaffe_model::{Description, Mode, Then};
 use piaffe_optimizer::constraints::sharing::applies;
 use piaffe_optimizer::four_legs::{RealLegs, Verdict};
 use piaffe_optimizer::result::{GaitResult, NotExamined, Status};
@@ -132,7 +132,7 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
         let transport = description.cost_of_transport(costs);
         writeln!(out, "  of transport    {transport:.4} (energy per weight and distance)")?;
     }
-    if let Some(step) = r.step_length {
+    if let Some(travel) = r.step_length {
         let durations: Vec<String> = r.durations.iter().map(|t| format!("{} s", decimal(*t, 4))).collect();
         writeln!(out, "  phases          {}", durations.join(" + "))?;
         let shortest: Vec<String> = shortest_flights(description, r).into_iter().map(digits).collect();
@@ -147,7 +147,8 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
             };
             writeln!(out, "  flight          as short as is allowed ({} s): {without}", shortest.join(" and "))?;
         }
-        writeln!(out, "  step length     {} m", decimal(step, 4))?;
+        let which = if description.then == Then::Mirrored { "half step" } else { "whole step" };
+        writeln!(out, "  {which:<15} {} m", decimal(travel, 4))?;
     }
     out.write_all(peaks::table(description, &r.peaks).as_bytes())?;
     if let Some(receipt) = &r.receipt {

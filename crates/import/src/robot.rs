@@ -300,8 +300,14 @@ impl Making<'_> {
         }
         let share = format!("{:.2} %", mended.change * 100.0);
         if mended.change <= 0.01 || mended.swing_is_kept || self.options.mend {
+            let kept = match mended.swing_is_kept {
+                true => {
+                    " of the greatest moment; its moment about the transverse axis, all that a gait in the plane sees, is kept"
+                }
+                false => " of the greatest moment",
+            };
             self.notes.push(format!(
-                "the inertia of `{}` is none that a body can have: it is changed to the nearest that is one, by {share}",
+                "the inertia of `{}` is none that a body can have: it is changed to the nearest that is one, by {share}{kept}",
                 source.name
             ));
             return mended.inertia;

@@ -4,10 +4,10 @@
 //! checked. A statement that must be there and is not is one that does not hold.
 
 use crate::origin::{gait_of, under_its_limits};
-use crate::result::GaitResult;
+use crate::result::{GaitResult, Status, impossible};
 use piaffe_model::digits::digits;
 use piaffe_model::motion::Motion;
-use piaffe_model::{Description, Gait, limit};
+use piaffe_model::{Gait, limit};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -33,6 +33,9 @@ const SAME_OPTIMUM: f64 = 1e-4;
 /// Of a result that has no motion.
 const NONE_FOUND: &str = "there is no motion: that none was found is a statement about the search";
 
+/// Of one whose gait can have none.
+const NO_MOTION: &str = "there is no motion: that follows from the limits, without a search";
+
 /// What became of a statement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -50,7 +53,7 @@ pub struct Statement {
     /// The entry's key.
     pub entry: String,
     pub verdict: Verdict,
-    /// Why it could not be checked, or by what it is refuted as a whole.
+    /// Why it could not be checked, or what it is confirmed or refuted by as a whole.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -209,10 +212,12 @@ pub enum Refusal {
 }
 
 /// What a result without a motion tells of its gait.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Built {
     robot: &'static str,
     polynomial_order: usize,
+    /// Why it has no motion, where that is known without a search.
+    impossible: Option<String>,
 }
 
 /// The result that the variables of another one make.
@@ -226,8 +231,9 @@ pub fn derived(result: &GaitResult, gaits: &[&dyn Gait]) -> Result<GaitResult, R
         return Err(refuted(format!("{} m/s is no speed to walk at", digits(result.speed))));
     }
     if result.variables.is_empty() {
-        let Description { robot, polynomial_order, .. } = *gait.description();
-        return Err(Refusal::NoMotion(Built { robot, polynomial_order }));
+        let d = gait.description();
+        let (robot, polynomial_order, impossible) = (d.robot, d.polynomial_order, impossible(d));
+        return Err(Refusal::NoMotion(Built { robot, polynomial_order, impossible }));
     }
     let motion = Motion { phases: result.variables.clone() };
     under_its_limits(result, gait, |gait| GaitResult::of_motion(gait, result.criterion, result.speed, &motion))
@@ -244,12 +250,20 @@ impl Statement {
         Statement { entry: entry.into(), verdict, reason: None, differences }
     }
 
-    /// An entry of a result without a motion. That none was found follows from nothing; what the gait is, from the build; all
-    /// else would be about a motion that is not there.
+    /// An entry of a result without a motion. That there is none may follow from the limits, that none was found from nothing; what the
+    /// gait is, from the build; all else would be about a motion that is not there.
     fn of_search(entry: &str, stated: &Value, result: &GaitResult, built: &Built) -> Statement {
         match entry {
             "robot" => Statement::of(entry, stated, &built.robot.into()),
             "polynomial_order" => Statement::of(entry, stated, &built.polynomial_order.into()),
+            "status" if built.impossible.is_some() => {
+                let found = Statement::of(entry, stated, &Status::Infeasible.name().into());
+                if found.verdict == Verdict::Confirmed { Statement::known(entry) } else { found }
+            }
+            // Older versions knew of fewer contradictions, and told what a search met.
+            "message" if built.impossible.is_some() && stated.as_str() == built.impossible.as_deref() => {
+                Statement::known(entry)
+            }
             "message" => Statement::not_derivable(entry, NONE_FOUND),
             "status" if !result.is_optimal() => Statement::not_derivable(entry, NONE_FOUND),
             _ => Statement::whole(entry, Verdict::NotConfirmed, "there is no motion that it could be of".into()),
@@ -259,6 +273,11 @@ impl Statement {
     /// An entry that follows from nothing that is here, and why.
     pub fn not_derivable(entry: &str, reason: &str) -> Statement {
         Statement::whole(entry, Verdict::NotDerivable, reason.into())
+    }
+
+    /// An entry that says of the limits what they say themselves.
+    fn known(entry: &str) -> Statement {
+        Statement::whole(entry, Verdict::Confirmed, NO_MOTION.into())
     }
 
     fn whole(entry: &str, verdict: Verdict, reason: String) -> Statement {

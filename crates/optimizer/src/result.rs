@@ -4,6 +4,7 @@ use crate::cycle::{Label, apart, theta};
 use crate::examine::Examination;
 use crate::four_legs::RealLegs;
 use crate::optimality::Optimality;
+use crate::search::bend::Bend;
 use crate::search::evidence::Effort;
 use crate::search::local::Local;
 use crate::search::multi_start::{Found, Settings};
@@ -12,7 +13,7 @@ use crate::stability::Stability;
 use crate::verdict::{self, Verdict};
 use piaffe_model::digits::digits;
 use piaffe_model::motion::{Costs, Course, Criterion, Motion};
-use piaffe_model::{Gait, Specification};
+use piaffe_model::{Description, Gait, Specification};
 use piaffe_sqp as sqp;
 use piaffe_verify::certificate::Certificate;
 use piaffe_verify::{Finding, JointPeak, VerifyError, verify};
@@ -85,7 +86,7 @@ pub struct GaitResult {
     /// s, per phase that defines the gait.
     #[serde(default)]
     pub durations: Vec<f64>,
-    /// Travel in these phases, m.
+    /// Travel in these phases, m: of a mirrored gait that of half a step.
     pub step_length: Option<f64>,
     /// Order of the joint polynomials.
     pub polynomial_order: usize,
@@ -387,14 +388,15 @@ impl GaitResult {
             let receipt = verify(gait.description(), &local.motion, self.speed, verdict::GRID);
             receipt.is_ok_and(|r| r.max_violation <= verdict::VIOLATION && r.cycle_error <= verdict::CYCLE_ERROR)
         };
-        let contradictions = gait.description().contradictions();
-        if !contradictions.is_empty() {
-            let all: Vec<String> = contradictions.iter().map(ToString::to_string).collect();
-            (self.status, self.message) = (Status::Infeasible, format!("infeasible: {}", all.join("; ")));
+        if let Some(message) = impossible(gait.description()) {
+            (self.status, self.message) = (Status::Infeasible, message);
             return;
         }
         if found.motion.as_ref().is_some_and(exists) {
-            self.message = "motions exist at this speed, but no start led to an optimum of the criterion".into();
+            let attempt = found.attempt.as_ref();
+            let bend = attempt.and_then(|local| Bend::of(gait.description(), self.criterion, &local.motion));
+            let why = bend.map_or(String::new(), |bend| format!("; {bend}"));
+            self.message = format!("motions exist at this speed, but no start led to an optimum of the criterion{why}");
             return;
         }
         let Some(local) = found.failure.as_ref() else {
@@ -420,6 +422,12 @@ impl GaitResult {
     pub fn is_optimal(&self) -> bool {
         self.status == Status::Optimal
     }
+}
+
+/// What a result says of a gait to whose limits no motion can keep, which is known without a search.
+pub fn impossible(d: &Description) -> Option<String> {
+    let all: Vec<String> = d.contradictions().iter().map(ToString::to_string).collect();
+    (!all.is_empty()).then(|| format!("infeasible: {}", all.join("; ")))
 }
 
 #[cfg(test)]

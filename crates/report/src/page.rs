@@ -13,8 +13,8 @@ use super::{certificate, compare, ink, levers, marks, player, price, real_legs, 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
-use piaffe_model::Description;
 use piaffe_model::motion::Criterion;
+use piaffe_model::{Description, Then};
 use piaffe_optimizer::result::GaitResult;
 use serde_json::{Value, json};
 
@@ -317,7 +317,7 @@ fn facts(s: &Subject) -> Markup {
                 dt { "cost of transport" } dd { (digits(s.transport, 4)) span.note { " E/(m g d)" @if r.criterion != Criterion::Energy { ", of this motion’s energy" } } }
                 @if let Some(costs) = costs { dt { (other.name()) } dd { (digits(costs.of(other), 6)) " " (other.unit()) } }
                 dt { "phases" } dd { (durations.join(" + ")) " s" }
-                dt { "travel in them" } dd { (digits(r.step_length.unwrap_or(0.0), 4)) " m" }
+                dt { "travel in them" } dd { (digits(r.step_length.unwrap_or(0.0), 4)) " m" @if s.description().then == Then::Mirrored { span.note { ", a half step" } } }
                 @for leg in 0..2 { dt { "virtual leg " (leg + 1) } dd { (s.leg_name(leg)) } }
                 dt { "local optima" } dd { (r.local_optima.len()) " from " (r.search.effort.starts) " starts" span.note { ", as the search says" } }
             }

@@ -19,7 +19,7 @@ pub enum Standing<'a> {
     Confirmed(&'a dyn Gait),
     /// It is not, or could not be looked at, for this reason.
     NotConfirmed(String),
-    /// It states no optimum. That none was found is a statement about a search: nothing confirms it.
+    /// It states no optimum. That none was found is a statement about a search, which nothing confirms, unless the limits say so themselves.
     NoOptimum,
 }
 

@@ -16,7 +16,7 @@ const SMALL: f64 = 11.0;
 pub fn figures(s: &Subject) -> Vec<Figure> {
     let side = View { horizontal: [1.0, 0.0, 0.0], vertical: [0.0, 1.0, 0.0], axis: "Xf" };
     let caption = format!(
-        "One step in {} poses at equal times. Blue: virtual leg 1 ({}); orange: virtual leg 2 ({}). Dotted: the feet's paths and the platform's mass centre. Dashed: the robot's mass centre{}.",
+        "One whole step in {} poses at equal times. Blue: virtual leg 1 ({}); orange: virtual leg 2 ({}). Dotted: the feet's paths and the platform's mass centre. Dashed: the robot's mass centre{}.",
         s.walk.phases.len() * POSES,
         s.leg_name(0),
         s.leg_name(1),

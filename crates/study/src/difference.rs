@@ -1,10 +1,10 @@
 //! Two results beside each other: what differs between their questions and their answers, and how much of the cost's difference
 //! follows from what differs between the robots.
 
-use piaffe_codegen::spec::numbers;
+use piaffe_codegen::spec::{default_of, numbers, words};
 use piaffe_model::Specification;
 use piaffe_model::motion::Criterion;
-use piaffe_optimizer::result::{GaitResult, Status};
+use piaffe_optimizer::result::{GaitResult, SearchEntry, Status};
 use piaffe_optimizer::sensitivity::{Sensitivities, Sensitivity};
 use serde::Serialize;
 
@@ -21,9 +21,14 @@ pub struct Difference {
     /// Whether both results carry their specifications; if not, nothing is known of their numbers.
     pub specified: bool,
     /// Numbers of the specification that are not the same in both, by their names.
-    pub numbers: Vec<Changed>,
-    /// Whether something else than numbers differs between the specifications, comments aside.
-    pub other_specification: bool,
+    pub numbers: Vec<Changed<f64>>,
+    /// What else of it is not: names, words, lists of them.
+    pub words: Vec<Changed<String>>,
+    /// Whether robot and gait, with their limits, are the same in both after all.
+    pub same_gait: bool,
+    pub limits_at_real_legs: Pair<bool>,
+    pub search: Pair<SearchEntry>,
+    pub version: Pair<String>,
     pub robot: Pair<String>,
     pub gait: Pair<String>,
     pub criterion: Pair<Criterion>,
@@ -42,11 +47,11 @@ pub struct Difference {
     pub prediction: Option<Prediction>,
 }
 
-/// A number of the specification; none where there is none of this name.
+/// An entry of the specification; none where nothing of this name is given.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Changed {
+pub struct Changed<T> {
     pub name: String,
-    pub values: Pair<Option<f64>>,
+    pub values: Pair<Option<T>>,
 }
 
 /// A limit that is active in one of both or both: its margin, scaled, where it is.
@@ -102,12 +107,17 @@ pub struct Part {
 
 impl Difference {
     pub fn new(a: &GaitResult, b: &GaitResult) -> Difference {
-        let (numbers, other_specification) = specification(a, b);
+        let specifications = a.specification.as_ref().zip(b.specification.as_ref());
+        let numbers = specifications.map_or(Vec::new(), |(a, b)| changed(a, b));
         Difference {
             prediction: Prediction::new(a, b, &numbers),
-            specified: is_specified(a, b),
+            specified: specifications.is_some(),
             numbers,
-            other_specification,
+            words: specifications.map_or(Vec::new(), |(a, b)| reworded(a, b)),
+            same_gait: a.fingerprint == b.fingerprint,
+            limits_at_real_legs: pair(a, b, |r| r.limits_at_real_legs),
+            search: pair(a, b, |r| r.search),
+            version: pair(a, b, |r| r.version.clone()),
             robot: pair(a, b, |r| r.robot.clone()),
             gait: pair(a, b, |r| r.gait.clone()),
             criterion: pair(a, b, |r| r.criterion),
@@ -131,33 +141,50 @@ fn pair<T>(a: &GaitResult, b: &GaitResult, of: impl Fn(&GaitResult) -> T) -> Pai
     Pair { a: of(a), b: of(b) }
 }
 
-/// The numbers that differ, and whether something else does.
-fn specification(a: &GaitResult, b: &GaitResult) -> (Vec<Changed>, bool) {
-    let (Some(of_a), Some(of_b)) = (&a.specification, &b.specification) else {
-        return (Vec::new(), a.fingerprint != b.fingerprint);
-    };
-    let changed = changed(of_a, of_b);
-    let other = changed.is_empty() && a.fingerprint != b.fingerprint
-        || changed.iter().any(|number| number.values.a.is_none() || number.values.b.is_none());
-    (changed, other)
+/// The numbers that differ between two specifications.
+pub fn changed(a: &Specification, b: &Specification) -> Vec<Changed<f64>> {
+    let all = |text: &str| numbers(text).into_iter().map(|number| (number.name, number.value)).collect();
+    differing(a, b, all, |default| default.parse().ok())
 }
 
-/// The numbers that differ between two specifications.
-pub fn changed(a: &Specification, b: &Specification) -> Vec<Changed> {
-    let all =
-        |s: &Specification| [numbers(&s.robot), numbers(&s.gait)].map(|list| list.into_iter()).into_iter().flatten();
-    let (of_a, of_b): (Vec<_>, Vec<_>) = (all(a).collect(), all(b).collect());
-    let mut changed = Vec::new();
-    for number in &of_a {
-        let other = of_b.iter().find(|other| other.name == number.name).map(|other| other.value);
-        if other != Some(number.value) {
-            changed.push(Changed { name: number.name.clone(), values: Pair { a: Some(number.value), b: other } });
+/// What else does: names, words, lists of them.
+fn reworded(a: &Specification, b: &Specification) -> Vec<Changed<String>> {
+    let all = |text: &str| words(text).into_iter().map(|word| (word.name, word.value)).collect();
+    differing(a, b, all, |default| Some(default.into()))
+}
+
+/// Whether the robot and the gait are the same, wherever their limits hold.
+pub fn same_robot(a: &GaitResult, b: &GaitResult) -> bool {
+    match (&a.specification, &b.specification) {
+        // Where limits hold is a part of a fingerprint.
+        (Some(of_a), Some(of_b)) if a.limits_at_real_legs != b.limits_at_real_legs => {
+            changed(of_a, of_b).is_empty() && reworded(of_a, of_b).is_empty()
         }
+        _ => a.fingerprint == b.fingerprint,
     }
-    for number in of_b.iter().filter(|number| of_a.iter().all(|other| other.name != number.name)) {
-        changed.push(Changed { name: number.name.clone(), values: Pair { a: None, b: Some(number.value) } });
-    }
-    changed
+}
+
+/// Entries that differ. What one leaves out is the same as its default in the other.
+fn differing<T: Clone + PartialEq>(
+    a: &Specification,
+    b: &Specification,
+    all: impl Fn(&str) -> Vec<(String, T)>,
+    default: impl Fn(&str) -> Option<T>,
+) -> Vec<Changed<T>> {
+    let of = |s: &Specification| -> Vec<(String, T)> { all(&s.robot).into_iter().chain(all(&s.gait)).collect() };
+    let (of_a, of_b) = (of(a), of(b));
+    let value = |entries: &[(String, T)], name: &str| {
+        entries.iter().find(|(other, _)| other == name).map(|(_, value)| value.clone())
+    };
+    let only_b = of_b.iter().filter(|(name, _)| value(&of_a, name).is_none());
+    let names = of_a.iter().chain(only_b).map(|(name, _)| name);
+    let entry = |name: &String| {
+        let values = Pair { a: value(&of_a, name), b: value(&of_b, name) };
+        let absent = || default_of(name).and_then(&default);
+        let differ = values.a.clone().or_else(absent) != values.b.clone().or_else(absent);
+        differ.then(|| Changed { name: name.clone(), values })
+    };
+    names.filter_map(entry).collect()
 }
 
 /// Limits that are active in one of both, with the phase.
@@ -213,7 +240,7 @@ impl Verdicts {
 }
 
 impl Prediction {
-    fn new(a: &GaitResult, b: &GaitResult, changed: &[Changed]) -> Option<Prediction> {
+    fn new(a: &GaitResult, b: &GaitResult, changed: &[Changed<f64>]) -> Option<Prediction> {
         let difference = b.cost? - a.cost?;
         let known = a.sensitivities.is_some() && b.sensitivities.is_some();
         if a.criterion != b.criterion || !known {

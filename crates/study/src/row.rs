@@ -109,7 +109,7 @@ pub struct Slopes {
     pub numbers: Vec<Option<f64>>,
 }
 
-/// Factors by which a push changes per step; below 1 it dies out.
+/// Factors by which a push changes in a whole step; below 1 it dies out.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pushed {
     /// With joints that follow a clock.

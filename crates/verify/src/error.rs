@@ -41,7 +41,7 @@ pub enum VerifyError {
     Singular { phase: usize, time: f64 },
     #[error("phase {phase}: the velocities after the impact are not determined (eq. 12)")]
     Impact { phase: usize },
-    #[error("the robot travels {distance:e} m in a step: costs per metre mean nothing")]
+    #[error("the robot travels {distance:e} m in its phases: costs per metre mean nothing")]
     NoTravel { distance: f64 },
 }
 

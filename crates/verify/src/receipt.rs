@@ -24,7 +24,7 @@ pub struct Receipt {
     /// that is greater, to a fifth of √(gravity/leg).
     pub cycle_error: f64,
     pub costs: Costs,
-    /// Travel of the platform's mass centre over the phases of the motion, m.
+    /// Travel of the platform's mass centre over the phases of the motion, m: of a mirrored gait that of a half step.
     pub step_length: f64,
     /// Mean forward speed, m/s.
     pub speed: f64,

@@ -57,7 +57,12 @@ impl Local {
 
     /// Whether it keeps to all limits, optimum or not.
     pub fn is_motion(&self) -> bool {
-        self.kkt.violation <= FEASIBILITY && self.violation <= DENSE
+        self.keeps_to_limits() && self.violation <= DENSE
+    }
+
+    /// The same at the instants of its descent, not between them.
+    pub fn keeps_to_limits(&self) -> bool {
+        self.kkt.violation <= FEASIBILITY
     }
 }
 

@@ -74,6 +74,8 @@ pub struct Found {
     pub failure: Option<Local>,
     /// Without an optimum: the cheapest motion within all limits that is known nevertheless.
     pub motion: Option<Local>,
+    /// And the cheapest end of a descent that keeps to all limits, at its instants at least.
+    pub attempt: Option<Local>,
     pub effort: Effort,
 }
 
@@ -163,6 +165,7 @@ pub fn search_watched(
     let mut found = collect(task, &ends);
     if found.optima.is_empty() {
         let cheapest = |a: &Local, b: &Local| a.costs.of(criterion).total_cmp(&b.costs.of(criterion));
+        found.attempt = ends.iter().map(|e| e.local.clone()).filter(Local::keeps_to_limits).min_by(cheapest);
         // Where a descent got lost is a motion by its own account only.
         let lost = || ends.iter().map(|e| e.local.clone()).filter(Local::is_motion).min_by(cheapest);
         found.motion = known.into_iter().min_by(cheapest).or_else(lost);
@@ -267,7 +270,7 @@ fn collect(task: &Task, ends: &[End]) -> Found {
     let starts = ends.iter().filter(|e| !e.informed).count();
     let successes = optima.iter().map(|o| o.reached).sum();
     let effort = Effort { starts, successes, informed: ends.len() - starts, optima: optima.len() };
-    Found { optima, failure: bad.first().map(|e| e.local.clone()), motion: None, effort }
+    Found { optima, failure: bad.first().map(|e| e.local.clone()), motion: None, attempt: None, effort }
 }
 
 /// How near two motions of one optimum are, in natural sizes of the variables.

@@ -30,9 +30,9 @@ pub enum PhaseTracking {
     Map {
         /// A quantity of the posture that grows all the time, and so can serve as the phase.
         phase: String,
-        /// What a deviation of σ² is multiplied by, from step to step.
+        /// What a deviation of σ² is multiplied by in a whole step.
         factor: f64,
-        /// Steps until a deviation is halved; none if it grows.
+        /// Whole steps until a deviation is halved; none if it grows.
         steps_to_halve: Option<f64>,
         /// Slowest entry into the first support, as a share of the gait's speed there, from which the robot does not fall
         /// back in this step.

@@ -34,14 +34,14 @@ pub enum Clock {
     StartsAnew,
 }
 
-/// The return map of (β, σ) from step to step.
+/// The return map of (β, σ) over a whole step: from step to step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TimeTracking {
-    /// Real and imaginary parts, per step.
+    /// Real and imaginary parts, per whole step.
     pub eigenvalues: [[f64; 2]; 2],
     /// Largest modulus: what a deviation is multiplied by, from step to step.
     pub factor: f64,
-    /// Steps until a deviation is halved; none if it grows.
+    /// Whole steps until a deviation is halved; none if it grows.
     pub steps_to_halve: Option<f64>,
 }
 

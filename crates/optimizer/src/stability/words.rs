@@ -30,7 +30,7 @@ impl fmt::Display for PhaseTracking {
 
 fn fate(f: &mut fmt::Formatter, factor: f64, steps_to_halve: Option<f64>) -> fmt::Result {
     match steps_to_halve {
-        Some(steps) => write!(f, "a push dies out, ×{factor:.3} per step (halved in {steps:.1})"),
-        None => write!(f, "a push grows, ×{factor:.3} per step"),
+        Some(steps) => write!(f, "a push dies out, ×{factor:.3} per whole step (halved in {steps:.1})"),
+        None => write!(f, "a push grows, ×{factor:.3} per whole step"),
     }
 }
