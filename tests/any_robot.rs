@@ -78,10 +78,7 @@ fn a_robot_that_nobody_built_walks_and_its_result_is_good_anywhere() {
     assert!(succeeds(folder.path(), "export stalk.json --format csv --rate 100", "").lines().count() > 10);
     assert!(succeeds(folder.path(), "export stalk.json --format mjcf", "").contains("left_metatarsus"));
     // On the ground it would fall over to the side, which a model in the plane does not know.
-    let lifted = piaffe_in(folder.path(), "lift stalk.json --rate 100");
-    let told = text(&lifted.stderr);
-    let notes = ["the real legs cannot move so", "cost on the real joints energy"];
-    assert!(lifted.status.success() && notes.iter().all(|note| told.contains(note)), "{told}");
+    succeeds(folder.path(), "lift stalk.json --rate 100", "the real legs cannot move so");
     assert!(succeeds(folder.path(), "report stalk.json --out page", "").contains("index.html"));
     assert!(succeeds(folder.path(), &format!("model stalk --robot {STORK}"), "").contains("ankle2"));
 

@@ -259,8 +259,8 @@ fn what_differs_between_questions_is_named_and_nothing_else() {
         let asked = |line: &&str| ["explained", "in all", "phases"].iter().all(|answer| !line.starts_with(answer));
         lines.take_while(asked).map(String::from).collect::<Vec<_>>()
     };
-    assert_eq!(question("one"), [same.clone()]);
-    assert_eq!(question("same"), [same.clone()]);
+    assert_eq!(question("one"), std::slice::from_ref(&same));
+    assert_eq!(question("same"), std::slice::from_ref(&same));
     let words = "words           virtual_legs: [[\"fore_left\", \"hind_right\"], [\"fore_right\", \"hind_left\"]] → \
                  [[\"hind_right\", \"fore_left\"], [\"fore_right\", \"hind_left\"]]";
     assert_eq!(question("other")[..2], [same.clone(), words.to_string()]);
