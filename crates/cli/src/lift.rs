@@ -34,14 +34,16 @@ pub fn run(file: &Path, format: Format, rate: f64, shares: Shares, out: &str) ->
     };
     let lift = Lift::at_rate(gait, &motion, rate, sharing)?;
     let legs = RealLegs::new(gait, &motion)?;
+    let mut told = Vec::new();
     if matches!(legs.verdict(), Verdict::BeyondLimits | Verdict::NoEquilibrium) {
-        output::note(&format!("{}; {}", legs.sentence(), whereabouts(&legs)));
+        told.push(format!("{}; {}", legs.sentence(), whereabouts(&legs)));
     }
     let (here, there) = (Lift::close(gait, &motion, sharing)?, Lift::close(gait, &motion, other)?);
-    output::note(&legs.cost_of(&here, sharing, &result));
+    told.push(legs.cost_of(&here, sharing, &result));
     if !legs.costs_alike(&here, &there) {
-        output::note(&format!("not written: {}", legs.cost_of(&there, other, &result)));
+        told.push(format!("not written: {}", legs.cost_of(&there, other, &result)));
     }
+    output::note(&told.join("; "));
     match format {
         Format::Json => output::json_to(out, &json(&lift))?,
         Format::Csv => output::bytes_to(out, csv(&lift).as_bytes())?,
