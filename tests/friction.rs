@@ -222,7 +222,7 @@ fn a_search_that_ends_at_a_bend_says_so() {
     let found = search(&run, Criterion::Torque, 1.1, &settings, &|_| {});
     let result = GaitResult::new(&run, Criterion::Torque, 1.1, &found, &settings, || 0.0);
     assert_eq!(result.status, Status::NotConverged);
-    assert!(result.message.contains("may be because of its dry friction"), "{}", result.message);
+    assert!(result.message.contains("may be because of dry friction"), "{}", result.message);
     assert!(result.message.contains("k1 comes to rest just at the end of phase 2"), "{}", result.message);
     // Least energy has none there, nor has who rubs less dryly.
     let motion = &found.attempt.unwrap().motion;

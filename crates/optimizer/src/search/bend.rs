@@ -48,7 +48,7 @@ impl fmt::Display for Bend {
         let at = if *at == End::Beginning { "beginning" } else { "end" };
         write!(
             f,
-            "that may be because of its dry friction: where the best attempt ends, {joint} comes to rest just at the {at} of phase {phase}, \
+            "that may be because of dry friction: where the best attempt ends, {joint} comes to rest just at the {at} of phase {phase}, \
              where least torque has a bend"
         )
     }
