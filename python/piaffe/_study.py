@@ -121,6 +121,10 @@ def _designs(robot: Robot, designs: Any, gaits: Sequence[str]) -> Tuple[List[str
         elif left:
             each = ", ".join(f"{value!r} in {gait}" for gait, value in asked.items() or values.items())
             faults.append(f"design {left[0]}: `{name}` is not the same in all gaits ({each}): give it, or ask about one gait")
+    for name in names:
+        left = [k for k, design in enumerate(table) if name not in design]
+        if left and not (name in known or name in robot.differing or robot.unknown([name])):
+            faults.append(f"design {left[0]}: `{name}` is no single number that stands in the robot's files: give it to every design")
     if faults:
         raise Error("\n".join(faults[:20]) + (f"\nand {len(faults) - 20} more" if len(faults) > 20 else ""))
     return names, [[float(design[name] if name in design else known[name]) for name in names] for design in table]

@@ -276,6 +276,8 @@ def test_what_cannot_be_asked_is_told_before_anything_is_computed(quadruped: pia
     for none in (3, "threads", [1]):
         with pytest.raises(TypeError, match="`executor` is .*: give one with `submit"):
             ask(quadruped, executor=none)
+    with pytest.raises(piaffe.Error, match=r"design 1: `links.\{thigh,shin\}.mass` is no single number"):
+        ask(quadruped, [{"links.{thigh,shin}.mass": 1.0}, {"limits.friction": 0.7}])
     with pytest.raises(piaffe.Error, match="different lengths"):
         ask(quadruped, {"gravity": [9.8, 9.7], "links.thigh.mass": [1.0]})
 
