@@ -6,6 +6,7 @@ use piaffe_codegen::dynamics::kernels;
 use piaffe_codegen::mechanism::Mechanism;
 use piaffe_codegen::spec::{Friction, Gait, Robot, parse_gait, parse_robot};
 use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 
 fn urdf() -> String {
     std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/a1.urdf")).unwrap()
@@ -199,6 +200,8 @@ fn the_shipped_a1_is_the_import() {
     let read = |text: &str| parse_robot("robot.toml", text).unwrap_or_else(|e| panic!("{}", e[0])).robot;
     let shipped = read(&std::fs::read_to_string(path).unwrap());
     let mut imported = read(&imported().robot);
+    let rubs = |name: &String| name.ends_with(".damping") || name.ends_with(".coulomb");
+    imported.written = imported.written.iter().filter(|name| !rubs(name)).cloned().collect::<BTreeSet<_>>().into();
     for joint in imported.legs.iter_mut().flat_map(|leg| &mut leg.chain).map(|segment| &mut segment.joint) {
         assert_eq!((joint.friction.damping, joint.friction.coulomb), (0.01, 0.2));
         joint.friction = Friction::default();
