@@ -5,8 +5,7 @@ use piaffe::import::{Import, Kind, Options, import};
 use piaffe_codegen::dynamics::kernels;
 use piaffe_codegen::mechanism::Mechanism;
 use piaffe_codegen::spec::{Friction, Gait, Robot, parse_gait, parse_robot};
-use std::collections::BTreeMap;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 fn urdf() -> String {
     std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/a1.urdf")).unwrap()
