@@ -122,7 +122,7 @@ impl Axis {
     }
 }
 
-/// A link of a leg without its foot, which is a point at its end: [`Link::rigid`] has both.
+/// A link of a leg without its foot, which is a point at its end: `Link::rigid` has both.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link {
     pub name: String,
