@@ -10,7 +10,7 @@ use piaffe::motion::Criterion;
 use piaffe::optimality::{KKT_RESIDUAL, optimality};
 use piaffe::result::{GaitResult, Status};
 use piaffe::search::atlas::sweep;
-use piaffe::search::fastest::nearest_speed;
+use piaffe::search::fastest::{maximum_speed, nearest_speed};
 use piaffe::search::journal::Journal;
 use piaffe::search::multi_start::{Settings, search};
 use piaffe::verify::sample;
@@ -159,6 +159,18 @@ impl Journal for Forgetful {
     fn record(&self, _: &str, _: Value) {}
     fn point(&self, _: &GaitResult) {}
     fn visited(&self, _: &dyn Gait, _: bool) {}
+}
+
+/// Where the fastest optimum that is known is as fast as any motion, what ends the gait is what stands against more.
+#[test]
+fn a_gait_that_is_known_up_to_its_end_ends_by_its_limits() {
+    let gait = named("trot");
+    let at = |speed: f64| optimize(gait, Criterion::Torque, speed, &FEW);
+    let mut end = maximum_speed(gait, &[at(1.05)], &FEW, &Forgetful).unwrap();
+    let (before, last) = (end.clone(), at(end.speed));
+    assert!(last.is_optimal() && before.ended_by.iter().any(|limit| limit.contains("swing clearance")));
+    assert!(end.optima(gait, &[Criterion::Torque], &[vec![last]], &FEW, &Forgetful).is_empty());
+    assert_eq!((end.speed, end.ended_by), (before.speed, before.ended_by));
 }
 
 #[test]

@@ -8,6 +8,7 @@ use piaffe::Task;
 use piaffe::examine::Examination;
 use piaffe::model::digits::digits;
 use piaffe::motion::Criterion;
+use piaffe::optimize::Unaskable;
 use piaffe::search::multi_start::Settings;
 use piaffe::sqp::Control;
 use pyo3::prelude::*;
@@ -21,10 +22,12 @@ pub fn criterion(name: &str) -> PyResult<Criterion> {
 
 /// A speed that can be asked for, m/s.
 pub fn speed(speed: f64) -> PyResult<f64> {
-    let good = speed.is_finite() && speed > 0.0;
-    good.then_some(speed).ok_or_else(|| {
-        Error::new_err(format!("`speed` is {}: give a positive number of m/s, such as 0.6", digits(speed)))
-    })
+    match Unaskable::of(speed) {
+        Some(_) => {
+            Err(Error::new_err(format!("`speed` is {}: give a positive number of m/s, such as 0.6", digits(speed))))
+        }
+        None => Ok(speed),
+    }
 }
 
 /// Starts of a search.

@@ -15,6 +15,7 @@ use piaffe::origin::is_of;
 use piaffe::report::{Extremes, Record, Report};
 use piaffe::result::GaitResult;
 use piaffe::walk::Walk;
+use piaffe_codegen::spec::BYTE_ORDER_MARK;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use serde::Serialize;
@@ -30,8 +31,7 @@ pub fn text(value: &impl Serialize) -> PyResult<String> {
 
 fn read(json: &str) -> Result<(Value, GaitResult), String> {
     let place = |why: serde_json::Error| format!("this is no result of piaffe: {why}");
-    // Some editors begin a text with a byte-order mark.
-    let json = json.trim_start_matches('\u{feff}');
+    let json = json.trim_start_matches(BYTE_ORDER_MARK);
     let value = serde_json::from_str(json).map_err(place)?;
     Ok((value, serde_json::from_str(json).map_err(place)?))
 }

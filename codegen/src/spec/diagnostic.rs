@@ -30,7 +30,7 @@ pub(super) struct At<T> {
 }
 
 /// Some editors begin a text with it.
-const BYTE_ORDER_MARK: char = '\u{feff}';
+pub const BYTE_ORDER_MARK: char = '\u{feff}';
 
 /// A specification file: the name that messages show, and its contents. Cheap to clone.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -51,7 +51,7 @@ mod words;
 mod tests;
 
 pub use code::Code;
-pub use diagnostic::{Diagnostic, Label, Source, Span};
+pub use diagnostic::{BYTE_ORDER_MARK, Diagnostic, Label, Source, Span};
 pub use format::default_of;
 pub use gait::{gait_mistakes, parse_gait};
 pub use load::load;

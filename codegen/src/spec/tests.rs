@@ -162,7 +162,6 @@ fn what_may_be_left_out() {
     assert_eq!(gait.limits.min_platform_height, 0.12);
 }
 
-/// A mass centre as a vector is the same as a distance along the link, which points along -y.
 #[test]
 fn a_byte_order_mark_is_no_part_of_a_text() {
     let marked = |path: &str| format!("\u{feff}{}", read(path));
@@ -176,6 +175,7 @@ fn a_byte_order_mark_is_no_part_of_a_text() {
     assert!(parse_robot("robot.toml", &super::load(&text, 1.0, [0.0; 3]).unwrap()).is_ok());
 }
 
+/// A mass centre as a vector is the same as a distance along the link, which points along -y.
 #[test]
 fn two_ways_to_write_a_mass_centre() {
     let text = read("robot.toml").replace("com = 0.139 ", "com = [0.0, -0.139, 0.0] ");

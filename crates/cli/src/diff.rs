@@ -84,7 +84,7 @@ fn asked(out: &mut impl Write, d: &Difference) -> io::Result<()> {
     } else if d.numbers.is_empty() {
         writeln!(out, "numbers         the same in both specifications")?;
     }
-    entries(out, "numbers", &d.numbers, |value| value.to_string())?;
+    entries(out, "numbers", &d.numbers, |value| digits(*value))?;
     entries(out, "words", &d.words, Clone::clone)?;
     let at_real_legs = d.limits_at_real_legs.a != d.limits_at_real_legs.b;
     let same = d.numbers.is_empty() && d.words.is_empty();

@@ -4,6 +4,7 @@ use super::harmless::line;
 use super::whole;
 use anyhow::{Context, bail};
 use piaffe_codegen::RobotFiles;
+use piaffe_codegen::spec::BYTE_ORDER_MARK;
 use serde::de::{DeserializeOwned, Error, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use serde_json::{Map, Value};
@@ -82,9 +83,6 @@ pub fn parse_json<T: DeserializeOwned>(file: &Path, text: &str) -> anyhow::Resul
     disarm(&mut value);
     serde_json::from_value(value).with_context(|| name.clone())
 }
-
-/// Some editors begin a text with it.
-const BYTE_ORDER_MARK: char = '\u{feff}';
 
 /// JSON in which no key stands twice: who reads the first and who reads the last would read different things.
 struct Unique(Value);

@@ -27,18 +27,18 @@ pub enum Shares {
 /// Writes the lifted motion of the result in `file` (`-`: standard input) to `out` (`-`: standard output).
 pub fn run(file: &Path, format: Format, rate: f64, shares: Shares, out: &str) -> anyhow::Result<bool> {
     let Readback { result, gait, motion, .. } = readback(file)?;
-    let least = Sharing::LeastCost(result.criterion);
-    let [sharing, other] = match shares {
-        Shares::LeastCost => [least, Sharing::MostRoom],
-        Shares::MostRoom => [Sharing::MostRoom, least],
+    let ways = [Sharing::LeastCost(result.criterion), Sharing::MostRoom];
+    let [least, room] = [Lift::close(gait, &motion, ways[0])?, Lift::close(gait, &motion, ways[1])?];
+    let legs = RealLegs::of(&room);
+    let [(sharing, here), (other, there)] = match shares {
+        Shares::LeastCost => [(ways[0], least), (ways[1], room)],
+        Shares::MostRoom => [(ways[1], room), (ways[0], least)],
     };
     let lift = Lift::at_rate(gait, &motion, rate, sharing)?;
-    let legs = RealLegs::new(gait, &motion)?;
     let mut told = Vec::new();
     if matches!(legs.verdict(), Verdict::BeyondLimits | Verdict::NoEquilibrium) {
         told.push(format!("{}; {}", legs.sentence(), whereabouts(&legs)));
     }
-    let (here, there) = (Lift::close(gait, &motion, sharing)?, Lift::close(gait, &motion, other)?);
     told.push(legs.cost_of(&here, sharing, &result));
     if !legs.costs_alike(&here, &there) {
         told.push(format!("not written: {}", legs.cost_of(&there, other, &result)));

@@ -1,6 +1,7 @@
 //! Elements and attributes with their places; numbers that are numbers.
 
 use super::fault::{Faults, ImportError, Kind, Place};
+use piaffe_codegen::spec::BYTE_ORDER_MARK;
 use roxmltree::{Document, Node, ParsingOptions};
 
 /// A text that roxmltree can read: blanks before the XML declaration and zeros at the end are cut off, and prefixes that nobody declared
@@ -13,7 +14,7 @@ pub struct Prepared {
 
 impl Prepared {
     pub fn new(text: &str) -> Result<Prepared, ImportError> {
-        let start = text.find(|c: char| !c.is_whitespace() && c != '\u{feff}').unwrap_or(text.len());
+        let start = text.find(|c: char| !c.is_whitespace() && c != BYTE_ORDER_MARK).unwrap_or(text.len());
         let skipped = text[..start].matches('\n').count();
         let text = text[start..].trim_end_matches(|c: char| c == '\0' || c.is_whitespace());
         let mut prepared = Prepared { text: text.to_string(), skipped };

@@ -3,6 +3,7 @@
 //! An audit says of each statement whether it was confirmed, with both numbers where it was not, or why it could not be
 //! checked. A statement that must be there and is not is one that does not hold.
 
+use crate::optimize::Unaskable;
 use crate::origin::{gait_of, under_its_limits};
 use crate::result::{GaitResult, Status, impossible};
 use piaffe_model::digits::digits;
@@ -227,7 +228,7 @@ pub struct Built {
 pub fn derived(result: &GaitResult, gaits: &[&dyn Gait]) -> Result<GaitResult, Refusal> {
     let gait = gait_of(result, gaits).map_err(|foreign| Refusal::Because(Verdict::NotChecked, foreign.to_string()))?;
     let refuted = |reason: String| Refusal::Because(Verdict::NotConfirmed, reason);
-    if !(result.speed.is_finite() && result.speed > 0.0) {
+    if Unaskable::of(result.speed).is_some() {
         return Err(refuted(format!("{} m/s is no speed to walk at", digits(result.speed))));
     }
     if result.variables.is_empty() {

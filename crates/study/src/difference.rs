@@ -108,10 +108,11 @@ pub struct Part {
 impl Difference {
     pub fn new(a: &GaitResult, b: &GaitResult) -> Difference {
         let specifications = a.specification.as_ref().zip(b.specification.as_ref());
+        let specified = specifications.is_some();
         let numbers = specifications.map_or(Vec::new(), |(a, b)| changed(a, b));
         Difference {
-            prediction: Prediction::new(a, b, &numbers),
-            specified: specifications.is_some(),
+            prediction: Prediction::new(a, b, specified.then_some(&numbers)),
+            specified,
             numbers,
             words: specifications.map_or(Vec::new(), |(a, b)| reworded(a, b)),
             same_gait: a.fingerprint == b.fingerprint,
@@ -131,10 +132,6 @@ impl Difference {
             verdicts: pair(a, b, Verdicts::of),
         }
     }
-}
-
-fn is_specified(a: &GaitResult, b: &GaitResult) -> bool {
-    a.specification.is_some() && b.specification.is_some()
 }
 
 fn pair<T>(a: &GaitResult, b: &GaitResult, of: impl Fn(&GaitResult) -> T) -> Pair<T> {
@@ -240,13 +237,14 @@ impl Verdicts {
 }
 
 impl Prediction {
-    fn new(a: &GaitResult, b: &GaitResult, changed: &[Changed<f64>]) -> Option<Prediction> {
+    /// `changed` are the numbers that differ, where that is known.
+    fn new(a: &GaitResult, b: &GaitResult, changed: Option<&Vec<Changed<f64>>>) -> Option<Prediction> {
         let difference = b.cost? - a.cost?;
         let known = a.sensitivities.is_some() && b.sensitivities.is_some();
         if a.criterion != b.criterion || !known {
             return None;
         }
-        let specified = is_specified(a, b);
+        let (specified, changed) = (changed.is_some(), changed.map_or(&[][..], Vec::as_slice));
         // Of numbers that stay alike, all change by the same share.
         let together = |of_a: &Sensitivity, of_b: &Sensitivity| {
             let share = |name: &String| {

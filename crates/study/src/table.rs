@@ -3,6 +3,7 @@
 use crate::column::{Cell, Column};
 use crate::designs::Designs;
 use crate::row::Row;
+use piaffe_codegen::spec::BYTE_ORDER_MARK;
 use std::fmt;
 
 /// The table as CSV (RFC 4180, UTF-8). Numbers have all of their digits; what is not there is empty.
@@ -47,7 +48,8 @@ pub fn designs(file: Vec<u8>) -> Result<Designs, Unlisted> {
 /// Designs from a CSV table: a column for each number under its name, a line for each design.
 fn of_text(text: &str) -> Result<Designs, Unlisted> {
     let unreadable = |why: csv::Error| Unlisted::unreadable(why.to_string());
-    let text = text.trim_start_matches(MARK);
+    // Spreadsheets say so that it is UTF-8.
+    let text = text.trim_start_matches(BYTE_ORDER_MARK);
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).flexible(true).from_reader(text.as_bytes());
     let names: Vec<String> = reader.headers().map_err(unreadable)?.iter().map(String::from).collect();
     if names.iter().all(String::is_empty) {
@@ -75,9 +77,6 @@ fn of_text(text: &str) -> Result<Designs, Unlisted> {
     }
     listed(names, &rows, faults)
 }
-
-/// What spreadsheets put before a text to say that it is UTF-8.
-const MARK: char = '\u{feff}';
 
 /// Faults that are told; who has seen them knows the others.
 const TOLD: usize = 20;

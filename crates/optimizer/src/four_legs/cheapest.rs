@@ -221,7 +221,7 @@ mod tests {
                 .collect();
             let at = |s: f64| {
                 let effort = Effort::new(&motors, &[s], &[s]);
-                (effort.powers.iter().map(|power| power.abs()).sum::<f64>(), effort.torque)
+                (effort.energy(), effort.torque)
             };
             let (energy, torque) = (at(least_energy(&motors)).0, at(least_torque(&motors)).1);
             for s in (-100..=100).map(|k| 0.1 * f64::from(k)) {

@@ -116,29 +116,33 @@ impl MaximumSpeed {
         journal: &dyn Journal,
     ) -> Vec<GaitResult> {
         let known = results.iter().flatten().filter(|r| r.is_optimal()).map(|r| r.speed).fold(0.0, f64::max);
+        if self.speed <= known {
+            return Vec::new();
+        }
+        let search = |at: &MaximumSpeed| -> Vec<GaitResult> {
+            let of = |(c, line): (&Criterion, &Vec<GaitResult>)| at.optimum(gait, *c, line, settings, journal);
+            criteria.iter().zip(results).map(of).collect()
+        };
+        let optima = search(self);
+        if optima.iter().any(GaitResult::is_optimal) {
+            return optima;
+        }
         let (edge, unit) = (self.speed, Units::new(gait.description()).speed());
-        let mut slower = (MaximumSpeed { speed: known, ended_by: vec![BEYOND.into()], ..self.clone() }, Vec::new());
-        let mut faster = None;
-        while self.speed > slower.0.speed {
-            let at = |(c, line): (&Criterion, &Vec<GaitResult>)| self.optimum(gait, *c, line, settings, journal);
-            let optima: Vec<_> = criteria.iter().zip(results).map(at).collect();
-            if !optima.iter().any(GaitResult::is_optimal) {
-                faster = Some(self.speed);
-            } else if faster.is_none() {
-                return optima;
-            } else {
-                slower = (self.clone(), optima);
-            }
-            let (good, bad) = (slower.0.speed, faster.unwrap_or(edge));
-            let width = if good > known { NARROWED * (edge - known) } else { 0.0 };
-            if bad - good <= width.max(BISECTION * unit) {
-                break;
-            }
-            self.speed = 0.5 * (good + bad);
-            self.ended_by = vec![BEYOND.into()];
+        self.ended_by = vec![BEYOND.into()];
+        let mut slower = (MaximumSpeed { speed: known, ..self.clone() }, Vec::new());
+        let mut faster = edge;
+        let narrow = |good: f64| if good > known { NARROWED * (edge - known) } else { 0.0 };
+        while faster - slower.0.speed > narrow(slower.0.speed).max(BISECTION * unit) {
+            self.speed = 0.5 * (slower.0.speed + faster);
             let name = format!("{} motion at {}", gait.description().key, self.speed);
             let nearby = || attempt(gait, self.speed, Some(&self.theta), settings).theta;
             self.theta = step(journal, &name, &(common(gait, settings), &self.theta), nearby).0;
+            let optima = search(self);
+            if optima.iter().any(GaitResult::is_optimal) {
+                slower = (self.clone(), optima);
+            } else {
+                faster = self.speed;
+            }
         }
         let optima;
         (*self, optima) = slower;
@@ -190,22 +194,21 @@ pub fn nearest_speed(gait: &dyn Gait, criterion: Criterion, speed: f64, settings
     if !gait.description().contradictions().is_empty() {
         return None;
     }
-    let at_most = |most: usize| {
-        let starts = settings.starts.map_or(most, |asked| asked.min(most));
-        Settings { starts: Some(starts), ..settings.clone() }
-    };
+    let starts = |most: usize| settings.starts.map_or(most, |asked| asked.min(most));
+    let at_most = |most: usize| Settings { starts: Some(starts(most)), ..settings.clone() };
     let unit = Units::new(gait.description()).speed();
     // From beyond all speeds that are asked for the way begins at the last of them, and leads to one side alone.
     let asked = speed.clamp(SLOWEST * unit, FASTEST * unit);
     let attempts = if asked == speed { ATTEMPTS } else { 2 * ATTEMPTS };
     let question = Question { gait, criterion, asked, settings, few: at_most(FEW) };
-    let closest = question.closest(&at_most(CLOSE));
+    let closest = question.closest(starts(CLOSE));
     let (none, wide) = (at_most(0), at_most(WIDE));
-    let beside = |speed: f64| attempt(gait, speed, closest.as_deref(), &none);
-    let motion = |speed: f64| attempt(gait, speed, None, &question.few);
+    let found = |local: Local| local.status.is_optimal().then_some(local.theta);
+    let beside = |speed: f64| found(attempt(gait, speed, closest.as_deref(), &none));
+    let motion = |speed: f64| found(attempt(gait, speed, None, &question.few));
     let optimum = |speed: f64| {
         let optima = search(gait, criterion, speed, &wide, &|_| {}).optima;
-        optima.into_iter().next().map_or_else(|| beside(speed), |found| found.local)
+        optima.into_iter().next().map(|optimum| optimum.local.theta)
     };
     let close = |k| BISECTION * unit * 2f64.powi(k);
     let near: Vec<_> = (0..DOUBLINGS).map(|k| [asked - close(k), asked + close(k)]).collect();
@@ -226,18 +229,18 @@ struct Question<'a> {
 
 impl Question<'_> {
     /// Of the starts the end of the one that comes closest to a motion.
-    fn closest(&self, settings: &Settings) -> Option<Vec<f64>> {
+    fn closest(&self, starts: usize) -> Option<Vec<f64>> {
         let task = Task { gait: self.gait, criterion: Criterion::Torque, speed: self.asked };
         let end = |k| {
-            let start = start(self.gait, Criterion::Torque, self.asked, settings.seed, k);
+            let start = start(self.gait, Criterion::Torque, self.asked, self.settings.seed, k);
             task.nearest_motion(&start, &mut |_| Control::Continue)
         };
-        let ends: Vec<Local> = (0..settings.starts.unwrap_or(CLOSE)).into_par_iter().map(end).collect();
+        let ends: Vec<Local> = (0..starts).into_par_iter().map(end).collect();
         ends.into_iter().min_by(|a, b| a.kkt.violation.total_cmp(&b.kkt.violation)).map(|end| end.theta)
     }
 
     /// The nearest answer by one way of looking for motions, at pairs of speeds on both sides, each further off than the last.
-    fn answer(&self, look: &dyn Fn(f64) -> Local, speeds: &[[f64; 2]]) -> Option<f64> {
+    fn answer(&self, look: &dyn Fn(f64) -> Option<Vec<f64>>, speeds: &[[f64; 2]]) -> Option<f64> {
         let unit = Units::new(self.gait.description()).speed();
         let mut last = [self.asked; 2];
         for pair in speeds {
@@ -245,9 +248,8 @@ impl Question<'_> {
                 if !(SLOWEST * unit..=FASTEST * unit).contains(candidate) {
                     continue;
                 }
-                let found = look(*candidate);
-                if found.status.is_optimal()
-                    && let Some(speed) = self.beyond(self.edge([*candidate, last], found.theta))
+                if let Some(theta) = look(*candidate)
+                    && let Some(speed) = self.beyond(self.edge([*candidate, last], theta))
                 {
                     return Some(speed);
                 }
