@@ -137,6 +137,7 @@ fn gradients_agree_with_differences_for_every_gait_criterion_and_order() {
         for criterion in Criterion::ALL {
             check(&rubbing::smooth(*gait), criterion, 4);
             (4..6).for_each(|seed| check(&rubbing::dry(*gait), criterion, seed));
+            check(&rubbing::sprung(*gait), criterion, 5);
             if gait.description().flies() {
                 check(*gait, criterion, 4);
                 continue;
@@ -147,6 +148,7 @@ fn gradients_agree_with_differences_for_every_gait_criterion_and_order() {
             check(&Altered::of_order(*gait, 6), criterion, 0);
             check(&Altered::at_real_legs(*gait).unwrap(), criterion, 0);
             check(&Altered::at_real_legs(&rubbing::dry(*gait)).unwrap(), criterion, 2);
+            check(&Altered::at_real_legs(&rubbing::sprung(*gait)).unwrap(), criterion, 2);
         }
     }
     let geared = geared();
@@ -163,7 +165,7 @@ fn geared() -> Interpreted {
 /// less than the criterion, and each has the gradient that differences have.
 #[test]
 fn folds_are_parts_of_the_criterion() {
-    let rub: Vec<_> = GAITS.iter().map(|gait| rubbing::dry(*gait)).collect();
+    let rub: Vec<_> = GAITS.iter().flat_map(|gait| [rubbing::dry(*gait), rubbing::sprung(*gait)]).collect();
     for gait in GAITS.iter().copied().chain(rub.iter().map(|gait| gait as &dyn Gait)) {
         let mut rng = fastrand::Rng::with_seed(7);
         let mut cycle = Cycle::new(gait, Criterion::Energy, 0.6);
@@ -240,7 +242,8 @@ fn all_joints_move(gait: &dyn Gait, theta: &[f64]) -> bool {
 #[test]
 fn the_hessian_of_the_lagrangian_agrees_with_differences_of_its_gradient() {
     let at_real_legs: Vec<_> = walking().map(|gait| Altered::at_real_legs(*gait).unwrap()).collect();
-    let rub: Vec<_> = GAITS.iter().flat_map(|gait| [rubbing::smooth(*gait), rubbing::dry(*gait)]).collect();
+    let rub: Vec<_> =
+        GAITS.iter().flat_map(|gait| [rubbing::smooth(*gait), rubbing::dry(*gait), rubbing::sprung(*gait)]).collect();
     let all_rub: Vec<_> = rub.iter().filter(|gait| !gait.description().flies()).collect();
     let rub_at_real_legs: Vec<_> = all_rub.into_iter().map(|gait| Altered::at_real_legs(gait).unwrap()).collect();
     let geared = geared();

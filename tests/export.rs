@@ -164,7 +164,9 @@ fn mujoco_agrees_about_masses_feet_and_inverse_dynamics_of_the_real_robot() {
     let Some(python) = python() else { return };
     let folder = tempfile::tempdir().unwrap();
     let rubs = rubbing::with(rubbing::GEARED);
-    let rub = ["trot", "curvet"].map(|name| rubs.gait(name).unwrap());
+    let springs = [("joints.knee.stiffness", 3.0), ("joints.knee.rest_angle", -0.6)];
+    let sprung = rubs.with_all(springs).unwrap();
+    let rub = [(&rubs, "trot"), (&rubs, "curvet"), (&sprung, "amble")].map(|(robot, name)| robot.gait(name).unwrap());
     let rub = rub.iter().map(|gait| gait as &dyn Gait);
     for gait in walking().map(|gait| *gait as &dyn Gait).chain(rub) {
         let d = gait.description();

@@ -214,6 +214,26 @@ fn slopes_in_friction_are_those_of_optima_of_other_robots() {
     }
 }
 
+/// Where a joint rubs not at all, what a little friction would cost; a torque–speed limit of the optimum feels it too.
+#[test]
+fn slopes_from_no_friction_are_those_of_optima_of_robots_that_rub() {
+    let smooth = with(Friction { damping: [0.0; 2], coulomb: [0.0; 2] });
+    let gait = smooth.gait("trot").unwrap();
+    let settings = Settings { starts: Some(4), seed: 1, ..Settings::default() };
+    let local = search(&gait, Criterion::Torque, SPEED, &settings, &|_| {}).optima[0].local.clone();
+    let found = sensitivities(&gait, Criterion::Torque, SPEED, &local.motion).unwrap();
+    for lever in ["joints.haunch.damping", "joints.knee.damping"] {
+        let slope = found.slopes.iter().find(|s| s.parameter == lever).unwrap_or_else(|| panic!("no {lever}"));
+        let at = |damping: f64| {
+            let other = smooth.with(lever, damping).unwrap();
+            cost(&other.gait("trot").unwrap(), Criterion::Torque, &local)
+        };
+        let h = 5e-4;
+        let differences = (-1.5 * at(0.0) + 2.0 * at(h) - 0.5 * at(2.0 * h)) / h;
+        assert!((slope.slope - differences).abs() < 1e-4 * differences.abs(), "{lever}: {} {differences}", slope.slope);
+    }
+}
+
 /// Least torque has a bend where a joint with dry friction comes to rest just at the end of a phase. Where a search ends there, it says so.
 #[test]
 fn a_search_that_ends_at_a_bend_says_so() {

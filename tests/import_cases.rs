@@ -567,6 +567,33 @@ fn friction_is_taken_over_and_said() {
     assert!(drives.len() == limits && drives.iter().all(|f| f.what.contains("less than none") && !f.remedy.is_empty()));
 }
 
+/// `stiffness` and `springref` of MJCF, in the file's angles and counted from its `ref`, are the specification's `stiffness` and
+/// `rest_angle`; of a joint that is turned round the angle is too.
+#[test]
+fn springs_are_taken_over_and_said() {
+    let plain = as_mjcf();
+    let import = |knee: &str, hip: &str| {
+        let knees = plain.replace("damping=\"1\"", knee);
+        assert!(knees != plain && knees.contains("_hip\" range"), "{knees}");
+        import(&knees.replace("_hip\" range", &format!("_hip\" {hip} range")), &given(&[("--velocity", "20")]))
+    };
+    let made = import("stiffness=\"7\" springref=\"-60\"", "stiffness=\"2\"").unwrap();
+    assert!(says(&made, "the springs of 8 joints are taken over, as `stiffness` and `rest_angle`"), "{:?}", made.notes);
+    let robot = builds(&made);
+    for leg in &robot.legs {
+        let [hip, knee] = [0, 1].map(|k| leg.chain[k].joint.spring);
+        assert_eq!((hip.stiffness, hip.rest, knee.stiffness), (2.0, 0.0, 7.0));
+        assert!((knee.rest.abs() - 60f64.to_radians()).abs() < 1e-9, "{}", knee.rest);
+        // On the side of the joint's own range.
+        let [low, high] = leg.chain[1].joint.range;
+        assert!((low..high).contains(&knee.rest), "{low} {high} {}", knee.rest);
+    }
+    let pushes = import("stiffness=\"-7\"", "").expect_err("pushes").0;
+    assert!(pushes.len() == 4 && pushes.iter().all(|f| f.what.contains("less than none") && !f.remedy.is_empty()));
+    let wound = import("stiffness=\"7\" springref=\"-400\"", "").expect_err("wound up").0;
+    assert!(wound.len() == 4 && wound.iter().all(|f| f.what.contains("more than a turn away") && !f.remedy.is_empty()));
+}
+
 /// What the file says of its world is not the robot's: where it moves freely is no part of it, what it weighs is.
 #[test]
 fn a_world_is_no_part_of_the_robot_but_for_its_gravity() {

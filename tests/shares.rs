@@ -53,8 +53,8 @@ fn asked(lift: &Lift, i: &Instant) -> Asked {
     let row = |k: usize| (columns.row(k).to_vec(), demand[k]);
     let motor = |j: usize| {
         let (columns, demand) = row(PLATFORM + j);
-        let rate = i.posture.rates()[j];
-        (columns, demand + legs.friction[j].map_or(0.0, |friction| friction.torque(rate)), rate)
+        let (angle, rate) = (i.posture.q[j], i.posture.rates()[j]);
+        (columns, demand + legs.passive[j].map_or(0.0, |passive| passive.torque(angle, rate)), rate)
     };
     Asked { platform: (0..PLATFORM).map(row).collect(), motors: (0..legs.joints.len()).map(motor).collect() }
 }

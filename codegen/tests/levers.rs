@@ -173,14 +173,7 @@ fn numbers_that_must_stay_alike_change_together() {
     assert!(named(&every_lever_keeps_the_gait(&robot("trot"), &files("trot").2.text), "links.shin.length"));
 }
 
-/// Mirror images turn the other way: where the platform rolls, a stop of a hip on the right is the other one on the left.
-#[test]
-fn stops_of_mirror_images_change_against_each_other() {
-    let mut text = files("a1/bound").1.text;
-    // In the middle, where its mirror image is.
-    text = text.replace("com = [0.0, -0.000499916680553, -0.00409931678054]", "com = [0.0, -0.0005, 0.0]");
-    let robot = parse_robot("robot.toml", &text).unwrap();
-    let gait = r#"
+const AMBLE_OF_A1: &str = r#"
 virtual_legs = [["FR", "RR"], ["FL", "RL"]]
 platform = { moves = ["x", "y", "z"], rotates = "roll" }
 unactuated = "platform"
@@ -191,13 +184,60 @@ min_vertical_force = 7.0
 swing_clearance = 0.005
 half_step_duration = [0.05, 2.0]
 "#;
-    let levers = every_lever_keeps_the_gait(&robot, gait);
+
+/// The A1 with its mass centre in the middle, where its mirror image is.
+fn even_a1() -> String {
+    let text = files("a1/bound").1.text;
+    text.replace("com = [0.0, -0.000499916680553, -0.00409931678054]", "com = [0.0, -0.0005, 0.0]")
+}
+
+/// Mirror images turn the other way: where the platform rolls, a stop of a hip on the right is the other one on the left.
+#[test]
+fn stops_of_mirror_images_change_against_each_other() {
+    let robot = parse_robot("robot.toml", &even_a1()).unwrap();
+    let levers = every_lever_keeps_the_gait(&robot, AMBLE_OF_A1);
     let stop = levers.iter().find(|l| l.numbers.iter().any(|n| n == "joints.FR_hip_joint.range.lower")).unwrap();
     let mut numbers: Vec<&str> = stop.numbers.iter().map(String::as_str).collect();
     numbers.sort_unstable();
     let upper = ["FL", "RL"].map(|leg| format!("joints.{leg}_hip_joint.range.upper"));
     let lower = ["FR", "RR"].map(|leg| format!("joints.{leg}_hip_joint.range.lower"));
     assert_eq!(numbers, [&upper[0], &lower[0], &upper[1], &lower[1]]);
+}
+
+/// A spring on the right that pulls inward is one on the left that pulls inward: their angles change against each other, what they and
+/// friction give changes alike, from zero too.
+#[test]
+fn springs_of_mirror_images_stay_so() {
+    let mut text = even_a1();
+    for leg in ["FR", "RR", "FL", "RL"] {
+        let rest = if leg.ends_with('R') { 0.1 } else { -0.1 };
+        for (joint, keys) in [
+            ("hip", format!("stiffness = 3.0\nrest_angle = {rest}\ndamping = 0.0\n")),
+            ("thigh", "stiffness = 0.0\nrest_angle = 0.4\n".into()),
+            ("calf", "stiffness = 2.0\nrest_angle = 0.0\n".into()),
+        ] {
+            let table = format!("[joints.{leg}_{joint}_joint]\n");
+            assert!(text.contains(&table));
+            text = text.replace(&table, &format!("{table}{keys}"));
+        }
+    }
+    let robot = parse_robot("robot.toml", &text).unwrap();
+    for gait in [AMBLE_OF_A1, TROT_OF_A1] {
+        let levers = every_lever_keeps_the_gait(&robot, gait);
+        let of = |name: &str| levers.iter().find(|l| l.numbers.iter().any(|n| n == name)).map(|l| l.slopes.len());
+        // What a virtual leg has is of both its real ones.
+        let hips = if gait == AMBLE_OF_A1 { Some(2) } else { None };
+        for (name, slopes) in [
+            ("hip_joint.stiffness", hips),
+            ("hip_joint.rest_angle", hips),
+            ("hip_joint.damping", hips),
+            ("thigh_joint.stiffness", Some(2)),
+            ("thigh_joint.rest_angle", None),
+            ("calf_joint.rest_angle", Some(2)),
+        ] {
+            assert_eq!(of(&format!("joints.FR_{name}")), slopes, "{name}");
+        }
+    }
 }
 
 /// A robot of which no number is shipped.

@@ -1,4 +1,5 @@
-//! Gaits of robots with friction in their joints. No equation of motion contains it, so the shipped gaits' kernels are theirs.
+//! Gaits of robots with springs and friction in their joints. No equation of motion contains them, so the shipped gaits' kernels are
+//! theirs.
 
 #![allow(dead_code)] // Not every test needs all of them.
 
@@ -13,6 +14,20 @@ pub fn with_friction(gait: &dyn Gait, viscous: f64, dry: f64) -> Altered<'_> {
             let share = if k % 2 == 0 { 1.0 } else { 0.7 };
             joint.damping = share * viscous * joint.max_torque / joint.unloaded_speed;
             joint.coulomb = share * dry * joint.max_torque;
+        }
+    });
+    altered.unwrap()
+}
+
+/// With springs beside all motors, which rest now on this side of the middle, now on that, and both kinds of friction.
+pub fn sprung(gait: &dyn Gait) -> Altered<'_> {
+    let altered = Altered::new(gait, |d| {
+        for (k, joint) in d.joints.to_mut().iter_mut().enumerate() {
+            let (share, [low, high]) = (if k % 2 == 0 { 0.3 } else { 0.7 }, joint.range);
+            joint.rest = low + share * (high - low);
+            joint.stiffness = 0.2 * share * joint.max_torque;
+            joint.damping = 0.02 * joint.max_torque / joint.unloaded_speed;
+            joint.coulomb = 0.01 * joint.max_torque;
         }
     });
     altered.unwrap()

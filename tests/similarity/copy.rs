@@ -88,6 +88,7 @@ impl<'a> Copy<'a> {
             joint.loaded_speed *= by.rate();
             joint.rotor_inertia *= by.inertia();
             joint.damping *= by.torque() * by.time;
+            joint.stiffness *= by.torque();
             joint.coulomb *= by.torque();
         }
         d.phases.to_mut().iter_mut().for_each(|phase| phase.duration = phase.duration.map(|t| t * by.time));

@@ -98,6 +98,7 @@ pub fn body(b: &Body, runtime: &Path) -> Written<TokenStream> {
 fn joint(j: &Actuated, runtime: &Path) -> Written<TokenStream> {
     let (name, range, gear, max_torque) = (&j.name, floats(j.range)?, float(j.gear)?, float(j.max_torque)?);
     let (unloaded, loaded, rotor) = (float(j.unloaded_speed)?, float(j.loaded_speed)?, float(j.rotor_inertia)?);
+    let (stiffness, rest) = (float(j.stiffness)?, float(j.rest)?);
     let (damping, coulomb) = (float(j.damping)?, float(j.coulomb)?);
     Ok(quote! {
         #runtime::Joint {
@@ -108,6 +109,8 @@ fn joint(j: &Actuated, runtime: &Path) -> Written<TokenStream> {
             unloaded_speed: #unloaded,
             loaded_speed: #loaded,
             rotor_inertia: #rotor,
+            stiffness: #stiffness,
+            rest: #rest,
             damping: #damping,
             coulomb: #coulomb,
         }

@@ -11,7 +11,7 @@
 
 use super::parameter::{Place, Sign};
 use super::{Actuated, Mechanism, parameter};
-use crate::spec::{Axis, Gait, Leg, Robot, Rotation, Then};
+use crate::spec::{Axis, Gait, Leg, Robot, Rotation, Spring, Then};
 use std::collections::BTreeSet;
 use std::fmt::Arguments;
 
@@ -180,7 +180,8 @@ fn tied<'n>(numbers: &'n [Number], robot: &Robot, gait: &Gait) -> Vec<Vec<&'n Nu
         // A mirror image turns the other way.
         tie(&format!("joints.{a}.range.lower"), &format!("joints.{b}.range.upper"));
         tie(&format!("joints.{a}.range.upper"), &format!("joints.{b}.range.lower"));
-        ["damping", "coulomb"].iter().for_each(|key| tie(&format!("joints.{a}.{key}"), &format!("joints.{b}.{key}")));
+        let alike = ["stiffness", "rest_angle", "damping", "coulomb"];
+        alike.iter().for_each(|key| tie(&format!("joints.{a}.{key}"), &format!("joints.{b}.{key}")));
     }
     if mirrored && gait.rotation == Rotation::Roll {
         // The hips are mirror images about the mass centre.
@@ -207,10 +208,11 @@ impl Sides {
         Sides(robot.legs.iter().flat_map(of_leg).collect())
     }
 
-    /// −1 for what is on the left and changes its sign with the side: places across, products with these, and stops of joints that
+    /// −1 for what is on the left and changes its sign with the side: places across, products with these, and angles of joints that
     /// do not pitch.
     fn of(&self, name: &str) -> f64 {
-        let changes = [".z", ".yz", ".zx"].iter().any(|end| name.ends_with(end)) || name.starts_with("joints.");
+        let ends = [".z", ".yz", ".zx", ".range.lower", ".range.upper", ".rest_angle"];
+        let changes = ends.iter().any(|end| name.ends_with(end));
         let table = self.0.iter().find(|(table, _)| name.starts_with(table.as_str()));
         table.filter(|_| changes).map_or(1.0, |(_, side)| *side)
     }
@@ -242,11 +244,21 @@ fn rounded(slope: f64) -> f64 {
 }
 
 impl Mechanism {
-    /// Numbers that no equation of motion contains: of each joint its range, greatest torque, speed limits and friction; then the
+    /// Numbers that no equation of motion contains: of each joint its range, greatest torque, speed limits, spring and friction; then the
     /// gait's limits.
     pub fn limiting_numbers(&self) -> Vec<f64> {
         let of_joint = |j: &Actuated| {
-            [j.range[0], j.range[1], j.max_torque, j.unloaded_speed, j.loaded_speed, j.damping, j.coulomb]
+            [
+                j.range[0],
+                j.range[1],
+                j.max_torque,
+                j.unloaded_speed,
+                j.loaded_speed,
+                j.stiffness,
+                j.rest,
+                j.damping,
+                j.coulomb,
+            ]
         };
         let l = &self.limits;
         let of_gait = [l.friction, l.min_vertical_force, l.swing_clearance];
@@ -260,7 +272,7 @@ impl Mechanism {
         let mut unlimited = self.clone();
         for j in &mut unlimited.joints {
             j.range = [0.0; 2];
-            [j.max_torque, j.unloaded_speed, j.loaded_speed, j.damping, j.coulomb] = [0.0; 5];
+            [j.max_torque, j.unloaded_speed, j.loaded_speed, j.stiffness, j.rest, j.damping, j.coulomb] = [0.0; 7];
         }
         unlimited.phases.iter_mut().for_each(|phase| phase.duration = [0.0; 2]);
         let l = &mut unlimited.limits;
@@ -281,6 +293,12 @@ fn places(robot: &mut Robot, gait: &mut Gait, mut visit: impl FnMut(Place)) {
         let ([lower, upper], name) = (&mut joint.range, &joint.name);
         add(format_args!("joints.{name}.range.lower"), "rad", lower);
         add(format_args!("joints.{name}.range.upper"), "rad", upper);
+        let Spring { stiffness, rest } = &mut joint.spring;
+        // Without a spring it does not matter where it would rest.
+        if *stiffness != 0.0 {
+            add(format_args!("joints.{name}.rest_angle"), "rad", rest);
+        }
+        add(format_args!("joints.{name}.stiffness"), "N·m/rad", stiffness);
         add(format_args!("joints.{name}.damping"), "N·m·s/rad", &mut joint.friction.damping);
         // Where a joint has no dry friction, the program does not ask which way it turns.
         if joint.friction.coulomb != 0.0 {

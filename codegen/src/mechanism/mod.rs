@@ -60,6 +60,9 @@ pub struct Actuated {
     pub loaded_speed: f64,
     /// Rotor inertias times gear², kg·m².
     pub rotor_inertia: f64,
+    /// A spring beside the motor, N·m/rad, and where it does nothing, rad.
+    pub stiffness: f64,
+    pub rest: f64,
     /// Viscous friction, N·m·s/rad, and dry friction, N·m.
     pub damping: f64,
     pub coulomb: f64,
@@ -200,6 +203,8 @@ impl Actuated {
             unloaded_speed: joint_speed(a.unloaded_speed),
             loaded_speed: joint_speed(a.loaded_speed),
             rotor_inertia: motors * a.rotor_inertia * a.gear * a.gear,
+            stiffness: motors * joint.spring.stiffness,
+            rest: joint.spring.rest,
             damping: motors * joint.friction.damping,
             coulomb: motors * joint.friction.coulomb,
         }

@@ -166,6 +166,7 @@ impl Leg {
             let Joint { axis, range: [low, high], .. } = segment.joint;
             if axis != Axis::Pitch {
                 segment.joint.range = [-high, -low];
+                segment.joint.spring.rest = 0.0 - segment.joint.spring.rest;
             }
             segment.link = segment.link.mirrored();
         }
@@ -193,10 +194,15 @@ pub(super) fn driven_unlike(a: &Leg, b: &Leg, mirrored: bool) -> Option<String> 
         return Some("the legs have different joints".into());
     }
     a.chain.iter().zip(&b.chain).map(|(s, t)| (&s.joint, &t.joint)).find_map(|(s, t)| {
+        let mirrored = if mirrored && t.axis != Axis::Pitch { "mirrored " } else { "" };
         if (0..2).any(|k| (s.range[k] - t.range[k]).abs() > SAME) {
-            let mirrored = if mirrored && t.axis != Axis::Pitch { "mirrored " } else { "" };
             let (a, b) = (s.range, t.range);
             return Some(format!("the {mirrored}ranges of `{}` and `{}` differ: {a:?} and {b:?}", s.name, t.name));
+        }
+        if s.spring.stiffness != t.spring.stiffness || (s.spring.rest - t.spring.rest).abs() > SAME {
+            let [a, b] =
+                [s, t].map(|joint| format!("{} N·m/rad about {} rad", joint.spring.stiffness, joint.spring.rest));
+            return Some(format!("the {mirrored}springs of `{}` and `{}` differ: {a} and {b}", s.name, t.name));
         }
         let same_motors = same_motor(&s.actuator, &t.actuator);
         let unlike = [(same_motors, "motors"), (s.friction == t.friction, "friction")];
@@ -261,7 +267,7 @@ impl Robot {
 #[cfg(test)]
 mod tests {
     use super::super::rigid::{IDENTITY, apply, times, turn};
-    use super::super::types::{Friction, Segment};
+    use super::super::types::{Friction, Segment, Spring};
     use super::*;
 
     fn leg(axes: &[Axis], mount: [f64; 3], ends: &[[f64; 3]]) -> Leg {
@@ -279,6 +285,7 @@ mod tests {
                 name: "joint".into(),
                 axis: *axis,
                 range: [-1.0, 1.0],
+                spring: Spring::default(),
                 friction: Friction::default(),
                 actuator,
             };

@@ -181,7 +181,7 @@ impl Parts {
         let actuator = raw.actuator.as_ref()?;
         let actuator = self.actuators.iter().find(|(name, _)| name.value == actuator.value)?.1.clone()?;
         let (name, axis) = (raw.name.value.clone(), raw.axis.value);
-        let joint = Joint { name, axis, range: raw.range?, friction: raw.friction?, actuator };
+        let joint = Joint { name, axis, range: raw.range?, spring: raw.spring?, friction: raw.friction?, actuator };
         Some(Segment { joint, link: self.link(&raw.child.as_ref()?.value)?.clone() })
     }
 

@@ -126,6 +126,20 @@ pub(super) static JOINT: Table = Table {
         .or("\"pitch\""),
         Key::new("range", Pair(Angle), "rad", "Lower and upper stop."),
         Key::new(
+            "stiffness",
+            Number(NonNegative),
+            "N·m/rad",
+            "Torque per angle of a spring beside the motor, at the joint; with `rest_angle`.",
+        )
+        .or("0"),
+        Key::new(
+            "rest_angle",
+            Number(Angle),
+            "rad",
+            "The joint's angle at which its spring does nothing; with `stiffness`.",
+        )
+        .or("no spring"),
+        Key::new(
             "damping",
             Number(NonNegative),
             "N·m·s/rad",

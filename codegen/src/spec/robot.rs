@@ -2,13 +2,14 @@
 
 use super::bodies::{actuator, link, platform};
 use super::chain::{self, Parts};
+use super::code::Code;
 use super::diagnostic::{At, Diagnostic, Label, Sink, Source, Span};
 use super::format;
 use super::keys::Table;
 use super::name;
 use super::set::numbers;
 use super::syntax;
-use super::types::{Axis, Friction, Link, Platform, Robot};
+use super::types::{Axis, Friction, Link, Platform, Robot, Spring};
 use super::view::View;
 use std::sync::Arc;
 
@@ -109,8 +110,30 @@ pub(super) struct RawJoint {
     pub child: Option<At<String>>,
     pub axis: At<Axis>,
     pub range: Option<[f64; 2]>,
+    pub spring: Option<Spring>,
     pub friction: Option<Friction>,
     pub actuator: Option<At<String>>,
+}
+
+/// A spring has a stiffness and an angle at which it rests; a joint without either has none.
+fn spring(view: &View<'_>, sink: &mut Sink) -> Option<Spring> {
+    let keys = ["stiffness", "rest_angle"];
+    let [stiffness, rest] = match keys.map(|key| view.has(key)) {
+        [false, false] => return Some(Spring::default()),
+        [true, true] => keys.map(|key| view.number(key, sink).map(|x| x.value)),
+        [has_stiffness, _] => {
+            let (given, missing) = if has_stiffness { (keys[0], keys[1]) } else { (keys[1], keys[0]) };
+            let title = format!("`{}` without `{missing}`", view.join(given));
+            let help = if has_stiffness {
+                "write rest_angle = the joint's angle at which the spring does nothing, in rad"
+            } else {
+                "write stiffness = the spring's torque per angle, in N·m/rad; 0 asks what a little of it would be worth"
+            };
+            sink.report(Code::MissingKey, title, &view.key_span(given), "a spring has both", help);
+            return None;
+        }
+    };
+    Some(Spring { stiffness: stiffness?, rest: rest? })
 }
 
 impl RawJoint {
@@ -121,6 +144,7 @@ impl RawJoint {
             parent: None,
             child: None,
             range: None,
+            spring: None,
             friction: None,
             actuator: None,
         };
@@ -136,6 +160,7 @@ impl RawJoint {
             joint.axis = At { value, span: word.span };
         }
         joint.range = view.pair("range", sink).map(|range| range.value);
+        joint.spring = spring(&view, sink);
         let mut friction = |key| if view.has(key) { view.number(key, sink).map(|x| x.value) } else { Some(0.0) };
         let (damping, coulomb) = (friction("damping"), friction("coulomb"));
         joint.friction = damping.zip(coulomb).map(|(damping, coulomb)| Friction { damping, coulomb });

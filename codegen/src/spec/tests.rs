@@ -63,7 +63,14 @@ fn the_shipped_robot() {
         rotor_inertia: 0.0,
     };
     let segment = |joint: &str, range, actuator, link: &str, mass, com: f64, inertia| Segment {
-        joint: Joint { name: joint.into(), axis: Axis::Pitch, range, friction: Friction::default(), actuator },
+        joint: Joint {
+            name: joint.into(),
+            axis: Axis::Pitch,
+            range,
+            spring: Spring::default(),
+            friction: Friction::default(),
+            actuator,
+        },
         link: Link {
             name: link.into(),
             mass,

@@ -85,8 +85,18 @@ pub struct Joint {
     pub axis: Axis,
     /// Lower and upper stop, rad.
     pub range: [f64; 2],
+    pub spring: Spring,
     pub friction: Friction,
     pub actuator: Actuator,
+}
+
+/// A spring beside a motor, at the joint: the motor overcomes `stiffness · (q − rest)`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Spring {
+    /// N·m/rad.
+    pub stiffness: f64,
+    /// Where it does nothing, rad.
+    pub rest: f64,
 }
 
 /// What a motor overcomes besides the dynamics, at the joint: `damping · q̇ + coulomb · sign q̇`.

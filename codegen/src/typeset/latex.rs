@@ -64,18 +64,26 @@ pub fn latex(robot: &Robot, gait: &Gait, mechanism: &Mechanism) -> String {
     text + "\\end{document}\n"
 }
 
-/// What motors give where joints rub, N·m; nothing where none does.
+/// What motors give where joints have springs or rub, N·m; nothing where none does.
 fn motors(mechanism: &Mechanism) -> String {
     let motor = |(k, joint): (usize, &Actuated)| {
         let (q, sign) = (format!("\\dot q_{{{}}}", k + 1), "\\operatorname{sign}");
+        let spring = (joint.stiffness != 0.0).then(|| {
+            let from = if joint.rest < 0.0 { "+" } else { "-" };
+            format!("{}\\,(q_{{{}}} {from} {})", number(joint.stiffness), k + 1, number(joint.rest.abs()))
+        });
         let viscous = (joint.damping != 0.0).then(|| format!("{}\\,{q}", number(joint.damping)));
         let dry = (joint.coulomb != 0.0).then(|| format!("{}\\,{sign} {q}", number(joint.coulomb)));
-        let rubs = viscous.is_some() || dry.is_some();
-        let terms = [Some(format!("\\Gamma_{{{}}}", k + 1)), viscous, dry].into_iter().flatten();
-        rubs.then(|| lines(&format!("\\Gamma^{{\\mathrm{{motor}}}}_{{{}}}", k + 1), terms))
+        let overcomes = spring.is_some() || viscous.is_some() || dry.is_some();
+        let terms = [Some(format!("\\Gamma_{{{}}}", k + 1)), spring, viscous, dry].into_iter().flatten();
+        overcomes.then(|| lines(&format!("\\Gamma^{{\\mathrm{{motor}}}}_{{{}}}", k + 1), terms))
     };
     let equations: Vec<String> = mechanism.joints.iter().enumerate().filter_map(motor).collect();
-    if equations.is_empty() { String::new() } else { aligned("Torques of the motors, with friction", &equations) }
+    if equations.is_empty() {
+        String::new()
+    } else {
+        aligned("Torques of the motors, with springs and friction", &equations)
+    }
 }
 
 fn aligned(title: &str, equations: &[String]) -> String {

@@ -2,7 +2,7 @@
 
 use piaffe_codegen::spec::{
     Actuator, Axis, Friction, Gait, Inertia, Joint, Leg, Limits, Link, Phases, Platform, Robot, Rotation, Segment,
-    Then, Unactuated,
+    Spring, Then, Unactuated,
 };
 
 /// Numbers in [0, 1), handed out one after another.
@@ -121,6 +121,7 @@ fn leg(name: &str, mount: [f64; 3], axes: &[Axis], draws: &mut Draws, build: &Bu
                 name: format!("joint{k}"),
                 axis: *axis,
                 range: [-1.0, 1.0],
+                spring: Spring::default(),
                 friction: Friction::default(),
                 actuator,
             },

@@ -114,6 +114,10 @@ fn limb(x: &mut Xml, d: &Description, leg: &Leg, member: &Member, bodies: &[Body
             ("range", numbers(&limits.range)),
             ("armature", (limits.rotor_inertia / share).to_string()),
         ];
+        if limits.has_spring() {
+            attributes.push(("stiffness", (limits.stiffness / share).to_string()));
+            attributes.push(("springref", limits.rest.to_string()));
+        }
         if limits.has_friction() {
             attributes.push(("damping", (limits.damping / share).to_string()));
             attributes.push(("frictionloss", (limits.coulomb / share).to_string()));

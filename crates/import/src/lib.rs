@@ -288,9 +288,9 @@ fn remarks(model: &Model, robot: &robot::Robot, notes: &mut Vec<String>) {
     if rubbing > 0 {
         notes.push(format!("the friction of {rubbing} joints is taken over, as `damping` and `coulomb`"));
     }
-    let sprung = model.joints.iter().filter(|j| j.sprung && j.turns()).count();
+    let sprung = robot.legs.iter().flat_map(|l| &l.segments).filter(|s| !s.joint.spring.is_none()).count();
     if sprung > 0 {
-        notes.push(format!("springs are dropped, of {sprung} joints"));
+        notes.push(format!("the springs of {sprung} joints are taken over, as `stiffness` and `rest_angle`"));
     }
     let motors = || robot.legs.iter().flat_map(|l| &l.segments).map(|s| &s.joint.motor);
     if motors().any(|m| m.gear.is_none()) {

@@ -2,7 +2,7 @@
 //! which all of them take their defaults.
 
 use super::fault::{Faults, Kind, Place};
-use super::model::{EARTH, Format, Friction, Joint, Kind as JointKind, Link, Mass, Model, Shape, Solid};
+use super::model::{EARTH, Format, Friction, Joint, Kind as JointKind, Link, Mass, Model, Shape, Solid, Spring};
 use super::xml::{File, child, children, plain};
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
 use roxmltree::Node;
@@ -291,8 +291,8 @@ impl<'a, 't, 'f> Reader<'a, 't, 'f> {
                 velocity: None,
                 gear: None,
                 rotor: None,
+                spring: Spring::default(),
                 friction: Friction::default(),
-                sprung: false,
             });
             return child;
         }
@@ -344,7 +344,11 @@ impl<'a, 't, 'f> Reader<'a, 't, 'f> {
         let force: Option<[f64; 2]> = self.numbers(of, "actuatorfrcrange");
         let armature = self.number(of, "armature").filter(|a| *a > 0.0);
         let [damping, coulomb] = ["damping", "frictionloss"].map(|key| self.number(of, key).unwrap_or_default());
-        let sprung = self.number(of, "stiffness").is_some_and(|stiffness| stiffness != 0.0);
+        let stiffness = self.number(of, "stiffness").unwrap_or_default();
+        let rest = (self.number(of, "springref").unwrap_or_default() - reference) * self.angle;
+        if self.word(of, "springdamper").is_some() {
+            self.notes.push(format!("`springdamper` of `{name}` is left out"));
+        }
         self.joints.push(Joint {
             name,
             place,
@@ -359,8 +363,8 @@ impl<'a, 't, 'f> Reader<'a, 't, 'f> {
             velocity: None,
             gear: None,
             rotor: armature,
+            spring: Spring { stiffness, rest },
             friction: Friction { damping, coulomb },
-            sprung,
         });
     }
 

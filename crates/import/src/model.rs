@@ -86,9 +86,26 @@ pub struct Joint {
     pub gear: Option<f64>,
     /// At the motor, kg·m².
     pub rotor: Option<f64>,
+    pub spring: Spring,
     pub friction: Friction,
-    /// Whether a spring acts on it.
-    pub sprung: bool,
+}
+
+/// Of a joint: stiffness, N·m/rad, and the angle at which it does nothing, rad.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Spring {
+    pub stiffness: f64,
+    pub rest: f64,
+}
+
+impl Spring {
+    pub fn is_none(self) -> bool {
+        self.stiffness == 0.0
+    }
+
+    /// Seen with the joint's angle turned round.
+    pub fn turned(self) -> Spring {
+        Spring { rest: 0.0 - self.rest, ..self }
+    }
 }
 
 /// Of a joint: viscous, N·m·s/rad, and dry, N·m.

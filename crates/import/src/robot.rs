@@ -3,7 +3,7 @@
 use super::fault::{Faults, Kind};
 use super::inertia;
 use super::limbs::{Limb, Limbs};
-use super::model::{Friction, Kind as JointKind, Model};
+use super::model::{Friction, Kind as JointKind, Model, Spring};
 use super::words::{Identifiers, fits, identifier};
 use super::{Options, ROUNDED, Rigid, Setting, nearest_axis};
 use nalgebra::{Matrix3, Vector3};
@@ -46,6 +46,7 @@ pub struct Joint {
     /// −1 where the specification's angle is the negative of the file's.
     pub sign: f64,
     pub range: [f64; 2],
+    pub spring: Spring,
     pub friction: Friction,
     pub motor: Motor,
 }
@@ -206,11 +207,25 @@ impl Making<'_> {
         let (motor, [low, high]) = (motor?, range?);
         let range = if sign < 0.0 { [0.0 - high, 0.0 - low] } else { [low, high] };
         let (name, friction) = (self.joints.distinct(&joint.name), joint.friction);
+        let spring = if sign < 0.0 { joint.spring.turned() } else { joint.spring };
+        if spring.stiffness < 0.0 {
+            let what = "the stiffness of its spring is less than none";
+            self.faults.add(Kind::Number, Some(&joint.place), what, "remove the sign of its stiffness");
+        }
+        if !spring.is_none() && spring.rest.abs() > TAU {
+            let what = format!("its spring rests at {:.3} rad, more than a turn away", spring.rest);
+            self.faults.add(
+                Kind::Number,
+                Some(&joint.place),
+                what,
+                "give a springref within a turn, in the file's unit of angles",
+            );
+        }
         if friction.damping < 0.0 || friction.coulomb < 0.0 {
             let what = "its friction is less than none: it would drive the joint";
             self.faults.add(Kind::Number, Some(&joint.place), what, "remove the sign of its damping or its friction");
         }
-        Some(Joint { name, axis, sign, range, friction, motor })
+        Some(Joint { name, axis, sign, range, spring, friction, motor })
     }
 
     fn motor(&mut self, index: usize) -> Option<Motor> {

@@ -4,7 +4,7 @@
 //! stops and motors in the plane; what they weigh is their own.
 
 use super::Rigid;
-use super::model::Friction;
+use super::model::{Friction, Spring};
 use super::robot::{Leg, Motor, PITCH, Robot};
 use nalgebra::Vector3;
 use piaffe_model::digits::few;
@@ -93,6 +93,13 @@ pub fn arrange(robot: &mut Robot, tolerance: f64, notes: &mut Vec<String>) -> Op
                     "the friction of `{}` is the mean of it and its counterparts: {:.3e} N·m·s/rad and {:.3e} N·m instead of {:.3e} \
                      and {:.3e}",
                     new.joint.name, is.damping, is.coulomb, was.damping, was.coulomb
+                ));
+            }
+            let (was, is) = (old.joint.spring, new.joint.spring);
+            if was != is {
+                notes.push(format!(
+                    "the spring of `{}` is the mean of it and its counterparts: {:.3e} N·m/rad about {:.4} rad instead of {:.3e} about {:.4}",
+                    new.joint.name, is.stiffness, is.rest, was.stiffness, was.rest
                 ));
             }
             let moved = (0..2).any(|k| (old.joint.range[k] - new.joint.range[k]).abs() > 1e-9);
@@ -195,6 +202,9 @@ impl Likening {
             t.joint.range = if mirrored { [0.0 - shared[1], 0.0 - shared[0]] } else { shared };
             let motor = one_motor(&s.joint.motor, &t.joint.motor);
             (s.joint.motor, t.joint.motor) = (motor, motor);
+            let seen = |spring: Spring| if mirrored { spring.turned() } else { spring };
+            let spring = mean_spring(&[s.joint.spring, seen(t.joint.spring)]);
+            (s.joint.spring, t.joint.spring) = (spring, seen(spring));
             let friction = mean(&[s.joint.friction, t.joint.friction]);
             (s.joint.friction, t.joint.friction) = (friction, friction);
             let names = [s.link.name.clone(), t.link.name.clone()];
@@ -315,6 +325,8 @@ impl Likening {
             }
             let all: Vec<Friction> = legs.iter().map(|l| l.segments[depth].joint.friction).collect();
             segment.joint.friction = mean(&all);
+            let all: Vec<Spring> = legs.iter().map(|l| l.segments[depth].joint.spring).collect();
+            segment.joint.spring = mean_spring(&all);
         }
         for other in &legs[1..] {
             let mean = |likening: &mut Self, a: f64, b: f64, name: &str| {
@@ -336,6 +348,7 @@ impl Likening {
                 s.link.end = Vector3::new(t.link.end.x, t.link.end.y, s.link.end.z);
                 if s.joint.axis == PITCH {
                     s.joint.range = t.joint.range;
+                    s.joint.spring = t.joint.spring;
                     s.joint.friction = t.joint.friction;
                     s.joint.motor = t.joint.motor;
                 }
@@ -357,6 +370,16 @@ impl Likening {
 
 fn shared(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0].max(b[0]), a[1].min(b[1])]
+}
+
+/// The spring that does on the mean what these do; of equal ones as it is.
+fn mean_spring(all: &[Spring]) -> Spring {
+    let Some(first) = all.first().filter(|first| all.iter().any(|spring| spring != *first)) else {
+        return all.first().copied().unwrap_or_default();
+    };
+    let sum: f64 = all.iter().map(|spring| spring.stiffness).sum();
+    let rest = all.iter().map(|spring| spring.stiffness * spring.rest).sum::<f64>() / sum;
+    Spring { stiffness: sum / all.len() as f64, rest: if sum > 0.0 { rest } else { first.rest } }
 }
 
 /// What joints rub that must rub alike; of equal ones as it is.

@@ -1,7 +1,7 @@
 //! URDF → [`Model`]. Only the parts that matter are read; what else is in a file cannot refuse it.
 
 use super::fault::{Faults, Kind, Place};
-use super::model::{Format, Friction, Joint, Kind as JointKind, Link, Mass, Model, Shape, Solid};
+use super::model::{Format, Friction, Joint, Kind as JointKind, Link, Mass, Model, Shape, Solid, Spring};
 use super::xml::{File, child, children, plain};
 use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
 use piaffe_model::digits::digits;
@@ -208,8 +208,8 @@ impl Reader<'_, '_, '_> {
             velocity,
             gear: None,
             rotor: None,
+            spring: Spring::default(),
             friction,
-            sprung: false,
         })
     }
 

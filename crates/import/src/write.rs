@@ -94,12 +94,16 @@ fn inertial(out: &mut String, body: &Rigid, keys: [&str; 3], length: &str) {
 fn joints(out: &mut String, leg: &Leg, platform: &str, motors: &Motors) {
     let mut parent = platform;
     for segment in &leg.segments {
-        let Joint { name, axis, sign, range, friction, motor } = &segment.joint;
+        let Joint { name, axis, sign, range, spring, friction, motor } = &segment.joint;
         let turned = if *sign < 0.0 { "  # turned round: the angle is minus the file's" } else { "" };
         put(out, &format!("\n[joints.{name}]"));
         put(out, &format!("parent = \"{parent}\"\nchild = \"{}\"", segment.link.name));
         put(out, &format!("axis = \"{}\"{turned}", AXES[*axis]));
         put(out, &format!("range = [{}, {}]  # rad", number(range[0]), number(range[1])));
+        if !spring.is_none() {
+            put(out, &format!("stiffness = {}  # N·m/rad", number(spring.stiffness)));
+            put(out, &format!("rest_angle = {}  # rad", number(spring.rest)));
+        }
         for (key, unit, x) in [("damping", "N·m·s/rad", friction.damping), ("coulomb", "N·m", friction.coulomb)] {
             if x != 0.0 {
                 put(out, &format!("{key} = {}  # {unit}", number(x)));

@@ -86,6 +86,8 @@ fn joint(j: &mechanism::Actuated) -> Joint {
         unloaded_speed: j.unloaded_speed,
         loaded_speed: j.loaded_speed,
         rotor_inertia: j.rotor_inertia,
+        stiffness: j.stiffness,
+        rest: j.rest,
         damping: j.damping,
         coulomb: j.coulomb,
     }

@@ -179,7 +179,12 @@ pub struct Joint {
     /// Speed limit at `max_torque`.
     pub loaded_speed: f64,
     pub rotor_inertia: f64,
-    /// What its motor overcomes besides the dynamics is `damping · q̇ + coulomb · sign q̇`: viscous friction, N·m·s/rad.
+    /// What its motor overcomes besides the dynamics is `stiffness · (q − rest) + damping · q̇ + coulomb · sign q̇`: a spring beside it,
+    /// N·m/rad.
+    pub stiffness: f64,
+    /// Where the spring does nothing, rad.
+    pub rest: f64,
+    /// Viscous friction, N·m·s/rad.
     pub damping: f64,
     /// Dry friction, N·m.
     pub coulomb: f64,
@@ -190,19 +195,27 @@ pub struct Joint {
 pub const RESTING_RATE: f64 = 1e-6;
 
 impl Joint {
+    /// Whether a spring acts beside its motor.
+    pub fn has_spring(&self) -> bool {
+        self.stiffness != 0.0
+    }
+
     /// Whether its motor has friction to overcome.
     pub fn has_friction(&self) -> bool {
         self.damping != 0.0 || self.coulomb != 0.0
     }
 }
 
-/// Friction is told where there is some: so a robot without it has the fingerprint that it always had.
+/// Springs and friction are told where there are some: so a robot without them has the fingerprint that it always had.
 impl fmt::Debug for Joint {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let mut joint = f.debug_struct("Joint");
         joint.field("name", &self.name).field("range", &self.range).field("gear", &self.gear);
         joint.field("max_torque", &self.max_torque).field("unloaded_speed", &self.unloaded_speed);
         joint.field("loaded_speed", &self.loaded_speed).field("rotor_inertia", &self.rotor_inertia);
+        if self.has_spring() {
+            joint.field("stiffness", &self.stiffness).field("rest", &self.rest);
+        }
         if self.has_friction() {
             joint.field("damping", &self.damping).field("coulomb", &self.coulomb);
         }

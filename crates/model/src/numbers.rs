@@ -23,9 +23,8 @@ pub struct Lever {
 impl Description {
     /// All numbers: first what is measured (gravity; of each body offset, mass, mass centre and inertia; of each joint the
     /// rotor's inertia; of each leg the foot, and of its members their bodies, feet and spots; the platform's corners), then
-    /// what no equation of motion contains (of each joint its range, greatest torque, unloaded and loaded speed, damping and dry
-    /// friction; the ground's friction, vertical force, clearance,
-    /// shortest and longest duration of each phase, platform height, body clearance).
+    /// what no equation of motion contains (of each joint its range, greatest torque, unloaded and loaded speed, its spring's
+    /// stiffness and rest, damping and dry friction; the ground's friction, vertical force, clearance, shortest and longest duration of each phase, platform height, body clearance).
     pub fn numbers(&self) -> Vec<f64> {
         let mut numbers = Vec::new();
         self.clone().for_each_number(&mut |number| numbers.push(*number));
@@ -50,6 +49,8 @@ impl Description {
             visit(&mut joint.max_torque);
             visit(&mut joint.unloaded_speed);
             visit(&mut joint.loaded_speed);
+            visit(&mut joint.stiffness);
+            visit(&mut joint.rest);
             visit(&mut joint.damping);
             visit(&mut joint.coulomb);
         }

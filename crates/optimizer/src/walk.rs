@@ -5,8 +5,8 @@
 
 use crate::cycle::{Cycle, Sample, theta};
 use crate::flow::Undefined;
-use crate::friction::Friction;
 use crate::instant::{Glance, Quantities};
+use crate::passive::Passive;
 use crate::swing::swings;
 use piaffe_model::motion::{Criterion, Motion};
 use piaffe_model::{Body, Description, Gait, Mode, Rotation, Then, Transition, other_leg};
@@ -56,7 +56,7 @@ pub struct Moment {
     pub q: Vec<f64>,
     pub qd: Vec<f64>,
     pub qdd: Vec<f64>,
-    /// Γ of every joint's motor of the virtual legs, friction overcome, N·m.
+    /// Γ of every joint's motor of the virtual legs, springs and friction overcome, N·m.
     pub torque: Vec<f64>,
     /// Reaction on the virtual leg in support, N; in flight zero.
     pub force: Point,
@@ -107,12 +107,12 @@ impl<'a> Walk<'a> {
         let cycle = Cycle::resolving(gait, Criterion::Torque, 1.0, &theta(motion))?;
         let count = d.phases.len();
         let rounds = if d.then == Then::Mirrored { 2 } else { 1 };
-        let friction = Friction::all(d);
+        let passive = Passive::all(d);
         let (mut phases, mut moments) = (Vec::new(), Vec::new());
         // Where positions of a phase are from: the stance foot, or the ground below the mass centre at take-off.
         let (mut origin, mut start) = ([0.0; 3], 0.0);
         for phase in 0..rounds * count {
-            let (k, role) = (phase % count, Role { gait, friction: &friction, mirrored: phase >= count });
+            let (k, role) = (phase % count, Role { gait, passive: &passive, mirrored: phase >= count });
             let mode = role.mode(d.phases[k].mode);
             let span = Span { start, duration: motion.phases[k].duration, mode };
             let ends = [0, cycle.last_node(k)].map(|node| cycle.sample(k, node));
@@ -166,9 +166,9 @@ fn even(intervals: usize) -> Vec<f64> {
 /// These shares of a phase, and between two where dry friction changes its sign, the last share before that and the first after.
 fn with_turns(cycle: &Cycle, phase: usize, shares: Vec<f64>) -> Result<Vec<f64>, Undefined> {
     let d = cycle.description();
-    let rubbing: Vec<(usize, Friction)> =
-        Friction::all(d).into_iter().enumerate().filter_map(|(joint, friction)| Some((joint, friction?))).collect();
-    if rubbing.iter().all(|(_, friction)| friction.coulomb == 0.0) {
+    let rubbing: Vec<(usize, Passive)> =
+        Passive::all(d).into_iter().enumerate().filter_map(|(joint, passive)| Some((joint, passive?))).collect();
+    if rubbing.iter().all(|(_, passive)| passive.coulomb == 0.0) {
         return Ok(shares);
     }
     let mut glance = Glance::new(d, phase);
@@ -182,10 +182,10 @@ fn with_turns(cycle: &Cycle, phase: usize, shares: Vec<f64>) -> Result<Vec<f64>,
         let now = rates(share)?;
         if let Some((from, before)) = &before {
             let first = with.len();
-            for (k, (_, friction)) in rubbing.iter().enumerate() {
-                let (old, new) = (friction.side(before[k]), friction.side(now[k]));
+            for (k, (_, passive)) in rubbing.iter().enumerate() {
+                let (old, new) = (passive.side(before[k]), passive.side(now[k]));
                 if old != new {
-                    let mut side = |share: f64| Ok(friction.side(rates(share)?[k]));
+                    let mut side = |share: f64| Ok(passive.side(rates(share)?[k]));
                     with.push(border(*from, share, |share| Ok(side(share)? == old))?[0]);
                     with.push(border(*from, share, |share| Ok(side(share)? != new))?[1]);
                 }
@@ -224,7 +224,7 @@ type Numbers = smallvec::SmallVec<[f64; 16]>;
 struct Role<'a> {
     gait: &'a dyn Gait,
     /// Of each joint.
-    friction: &'a [Option<Friction>],
+    passive: &'a [Option<Passive>],
     mirrored: bool,
 }
 
@@ -292,8 +292,9 @@ impl Role<'_> {
         let (x, xd) = (together(&platform[..nc], &q), together(velocity, &qd));
         self.gait.centre_of_mass(&x, &xd, &mut centre);
         let mut motors = Numbers::from_slice(&sample.quantities[y.torque(0)..][..nj]);
-        for ((motor, friction), rate) in motors.iter_mut().zip(self.friction).zip(sample.state[1]) {
-            friction.iter().for_each(|friction| *motor += friction.torque(*rate));
+        let moves = sample.state[0].iter().zip(sample.state[1]);
+        for ((motor, passive), (angle, rate)) in motors.iter_mut().zip(self.passive).zip(moves) {
+            passive.iter().for_each(|passive| *motor += passive.torque(*angle, *rate));
         }
         let force = match y.components() {
             0 => [0.0; 3],

@@ -71,7 +71,9 @@ pub fn evaluate(
         let count = LANES.min(points - first);
         for (j, (motor, rate)) in state.motors.iter().zip(&state.qd).enumerate() {
             let joint = &description.joints[j];
-            let smooth = if joint.coulomb == 0.0 { *motor } else { state.torques[j] + rate.scale(joint.damping) };
+            let spring = || (state.q[j] - Lanes([joint.rest; LANES])).scale(joint.stiffness);
+            let smooth =
+                if joint.coulomb == 0.0 { *motor } else { state.torques[j] + spring() + rate.scale(joint.damping) };
             for lane in 0..count {
                 let (torque, rate, at) = (smooth.0[lane], rate.0[lane], j * points + first + lane);
                 squares[first + lane] += torque * torque;

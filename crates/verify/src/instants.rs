@@ -43,7 +43,7 @@ pub struct State<T = f64> {
     pub qdd: Vec<T>,
     /// Of every joint: what moves the robot, N·m.
     pub torques: Vec<T>,
-    /// Of every joint's motor, at the joint: that, and what overcomes friction, N·m.
+    /// Of every joint's motor, at the joint: that, and what overcomes springs and friction, N·m.
     pub motors: Vec<T>,
     /// Reaction on the stance foot, N.
     pub force: Vec3<T>,

@@ -52,6 +52,9 @@ pub struct Actuator<T> {
     pub unloaded_speed: T,
     pub loaded_speed: T,
     pub rotor_inertia: T,
+    /// A spring beside the motor, and where it does nothing.
+    pub stiffness: T,
+    pub rest: T,
     /// Viscous friction.
     pub damping: T,
     /// Dry friction.
@@ -83,6 +86,8 @@ impl<T: Scalar> Numbers<T> {
             max_torque: one(),
             unloaded_speed: one(),
             loaded_speed: one(),
+            stiffness: one(),
+            rest: one(),
             damping: one(),
             coulomb: one(),
             rotor_inertia,

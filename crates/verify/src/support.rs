@@ -174,11 +174,14 @@ impl<'a, T: Scalar, G: Geometry<T>> Support<'a, T, G> {
         reaction
     }
 
-    /// What the motors give: friction is a torque inside a joint, which moves nothing and which its motor has to overcome.
-    fn overcome_friction(&self, state: &mut State<T>) {
+    /// What the motors give: springs and friction are torques inside a joint, which its motor has to overcome.
+    fn motors(&self, state: &mut State<T>) {
         let description = self.multibody.description();
         for (k, joint) in self.multibody.numbers().joints.iter().enumerate() {
             state.motors[k] = state.torques[k];
+            if description.joints[k].has_spring() {
+                state.motors[k] += joint.stiffness * (state.q[k] - joint.rest);
+            }
             if description.joints[k].has_friction() {
                 state.motors[k] += joint.damping * state.qd[k] + joint.coulomb * state.qd[k].side(self.at_rest);
             }
@@ -188,7 +191,7 @@ impl<'a, T: Scalar, G: Geometry<T>> Support<'a, T, G> {
     /// Completes what follows from the last [`Support::accelerate`] and the `qdd` it wrote.
     pub fn complete(&mut self, state: &mut State<T>) {
         let force = self.torques(&state.qdd, &mut state.torques);
-        self.overcome_friction(state);
+        self.motors(state);
         let feet = [0, 1].map(|leg| *self.multibody.foot(leg));
         let origin = self.leg.map_or_else(|| self.multibody.centre(), |leg| feet[leg]);
         // How deep the hips are does not matter in the plane.

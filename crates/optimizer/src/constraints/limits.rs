@@ -1,6 +1,6 @@
 //! The numbers that the constraints compare with, as the optimizer reads them from a description.
 
-use crate::friction::Friction;
+use crate::passive::Passive;
 use piaffe_model::Description;
 use piaffe_number::{Dual, Scalar};
 
@@ -25,32 +25,38 @@ pub struct JointLimits<T = f64> {
     pub unloaded_speed: T,
     pub loaded_speed: T,
     /// What its motor has to overcome, if anything.
-    pub friction: Option<Friction<T>>,
+    pub passive: Option<Passive<T>>,
 }
 
 impl Limits {
     /// As they are.
     pub fn new(d: &Description) -> Limits {
-        Limits::read(d, |number| number(d))
+        Limits::read(d, |number| number(d), |j| Passive::acts(&d.joints[j]))
     }
 }
 
 impl<const N: usize> Limits<Dual<f64, N>> {
     /// With their derivatives in `N` directions: descriptions whose numbers are those by which the description's change.
     pub fn along(d: &Description, directions: &[Description; N]) -> Self {
-        Limits::read(d, |number| Dual { x: number(d), d: directions.each_ref().map(number) })
+        // Springs and friction that are zero may change too.
+        let acts = |j: usize| directions.iter().chain([d]).any(|d| Passive::acts(&d.joints[j]));
+        Limits::read(d, |number| Dual { x: number(d), d: directions.each_ref().map(number) }, acts)
     }
 }
 
 impl<T: Scalar> Limits<T> {
-    /// Picks every limit; `one` makes a scalar of what a pick gives.
-    fn read(d: &Description, one: impl Fn(&dyn Fn(&Description) -> f64) -> T) -> Limits<T> {
+    /// Picks every limit; `one` makes a scalar of what a pick gives, `acts` tells which joints' motors have something to overcome.
+    fn read(
+        d: &Description,
+        one: impl Fn(&dyn Fn(&Description) -> f64) -> T,
+        acts: impl Fn(usize) -> bool,
+    ) -> Limits<T> {
         let joint = |j: usize| JointLimits {
             range: [0, 1].map(|end| one(&|d| d.joints[j].range[end])),
             max_torque: one(&|d| d.joints[j].max_torque),
             unloaded_speed: one(&|d| d.joints[j].unloaded_speed),
             loaded_speed: one(&|d| d.joints[j].loaded_speed),
-            friction: Friction::read(d, j, &one),
+            passive: acts(j).then(|| Passive::read(d, j, &one)),
         };
         Limits {
             joints: (0..d.joints()).map(joint).collect(),

@@ -17,8 +17,8 @@ mod swing;
 pub use impact::ImpactConstraints;
 pub use limits::{JointLimits, Limits};
 
-use crate::friction::Friction;
 use crate::instant::Quantities;
+use crate::passive::Passive;
 use crate::swing::swings;
 use piaffe_model::{Description, Limit};
 use piaffe_number::Scalar;
@@ -48,8 +48,8 @@ pub enum Form<T = f64> {
     Cone { normal: usize, factor: T, tangential: Vec<usize> },
     /// A limit on one of the real legs.
     Share(Share<T>),
-    /// `offset + by_torque · Γ + by_rate · q̇`, where Γ is that of a motor with friction to overcome; quantities with these factors.
-    Motor { offset: T, torque: (usize, T), rate: (usize, T), friction: Friction<T> },
+    /// `offset + by_torque · Γ + by_rate · q̇`, where Γ is that of a motor with something to overcome; quantities with these factors.
+    Motor { offset: T, torque: (usize, T), angle: usize, rate: (usize, T), passive: Passive<T> },
 }
 
 /// All path constraints of phase `k` of a gait.
@@ -105,8 +105,8 @@ impl<T: Scalar> PathConstraint<T> {
             Form::Linear { offset, terms } => *offset + terms.iter().fold(T::zero(), |sum, (q, c)| sum + *c * y[*q]),
             Form::Cone { normal, factor, tangential } => *factor * y[*normal] - norm(y, tangential),
             Form::Share(share) => share.value(y),
-            Form::Motor { offset, torque, rate, friction } => {
-                let motor = y[torque.0] + friction.torque(y[rate.0]);
+            Form::Motor { offset, torque, angle, rate, passive } => {
+                let motor = y[torque.0] + passive.torque(y[*angle], y[rate.0]);
                 *offset + rate.1 * y[rate.0] + torque.1 * motor
             }
         };
@@ -129,9 +129,10 @@ impl PathConstraint {
             }
             Form::Share(share) => share.partials(y, |q, partial| add(q, partial / self.unit)),
             // Where the rate changes its sign the limit jumps; it has no slope there.
-            Form::Motor { torque, rate, friction, .. } => {
+            Form::Motor { torque, angle, rate, passive, .. } => {
                 add(torque.0, torque.1 / self.unit);
-                add(rate.0, (rate.1 + torque.1 * friction.damping) / self.unit);
+                add(*angle, torque.1 * passive.stiffness / self.unit);
+                add(rate.0, (rate.1 + torque.1 * passive.damping) / self.unit);
             }
         }
     }

@@ -13,8 +13,8 @@
 //! against pitching: no more of it may be asked for than may be lacking (`BALANCED`). Where the hips are level with the mass centre none is.
 
 use super::{Form, Limits, PathConstraint};
-use crate::friction::Friction;
 use crate::instant::{Quantities, Shared};
+use crate::passive::Passive;
 use piaffe_model::{Description, Leg, Limit, Then};
 use piaffe_number::{Dual, Scalar};
 
@@ -82,13 +82,14 @@ pub struct Share<T = f64> {
     of: Of<T>,
 }
 
-const COUNT: usize = 10;
-/// Places in `Share::quantities`: reaction, moment, lever of a joint, its torque and rate.
+const COUNT: usize = 11;
+/// Places in `Share::quantities`: reaction, moment, lever of a joint, its torque, rate and angle.
 const FORCE: usize = 0;
 const MOMENT: usize = 3;
 const LEVER: usize = 5;
 const TORQUE: usize = 8;
 const RATE: usize = 9;
+const ANGLE: usize = 10;
 
 #[derive(Clone, Copy, Debug)]
 enum Of<T> {
@@ -98,8 +99,8 @@ enum Of<T> {
     Vertical(T),
     /// |tangential| ≤ this · vertical.
     Friction(T),
-    /// `bound − torque · Γ − rate · q̇ ≥ 0`, Γ the motor's, which may have friction to overcome.
-    Actuator { bound: T, torque: T, rate: f64, friction: Option<Friction<T>> },
+    /// `bound − torque · Γ − rate · q̇ ≥ 0`, Γ the motor's, which may have something to overcome.
+    Actuator { bound: T, torque: T, rate: f64, passive: Option<Passive<T>> },
 }
 
 pub fn constraints<T: Scalar>(d: &Description, limits: &Limits<T>, y: &Quantities) -> Vec<PathConstraint<T>> {
@@ -122,14 +123,14 @@ pub fn constraints<T: Scalar>(d: &Description, limits: &Limits<T>, y: &Quantitie
             let (joint, actuator) = (&d.joints[j], &limits.joints[j]);
             let joint_of_leg = || format!("{} of {}", joint.name, member.name);
             let bound = actuator.max_torque.scale(share);
-            let friction = actuator.friction;
+            let passive = actuator.passive;
             for sign in [1.0, -1.0] {
-                let limit = Of::Actuator { bound, torque: T::from(sign), rate: 0.0, friction };
+                let limit = Of::Actuator { bound, torque: T::from(sign), rate: 0.0, passive };
                 add(Limit::Torque, joint_of_leg(), joint.max_torque * share, k, limit);
             }
             let slope = (actuator.unloaded_speed - actuator.loaded_speed) / bound;
             for (rate, torque) in [(1.0, slope), (1.0, -slope), (-1.0, slope), (-1.0, -slope)] {
-                let limit = Of::Actuator { bound: actuator.unloaded_speed, torque, rate, friction };
+                let limit = Of::Actuator { bound: actuator.unloaded_speed, torque, rate, passive };
                 add(Limit::TorqueSpeed, joint_of_leg(), joint.unloaded_speed, k, limit);
             }
         }
@@ -161,6 +162,7 @@ fn quantities(d: &Description, y: &Quantities, joint: usize) -> [usize; COUNT] {
     quantities[MOMENT + 1] = at(shared.moment(1));
     quantities[TORQUE] = y.torque(d.legs[0].first_joint + joint);
     quantities[RATE] = y.rate(d.legs[0].first_joint + joint);
+    quantities[ANGLE] = y.angle(d.legs[0].first_joint + joint);
     quantities
 }
 
@@ -181,10 +183,10 @@ impl<T: Scalar> Of<T> {
             Of::Torque => torque_of_joint(),
             Of::Vertical(least) => vertical - least,
             Of::Friction(mu) => mu * vertical - length([forward, lateral], weight),
-            Of::Actuator { bound, torque, rate, friction } => {
+            Of::Actuator { bound, torque, rate, passive } => {
                 let moving = torque_of_joint();
                 // Real legs move alike, so that each of the two has half of the virtual leg's.
-                let motor = friction.map_or(moving, |friction| moving + friction.torque(v[RATE]).scale(0.5));
+                let motor = passive.map_or(moving, |passive| moving + passive.torque(v[ANGLE], v[RATE]).scale(0.5));
                 bound - torque * motor - v[RATE].scale(rate)
             }
         }
@@ -204,9 +206,9 @@ impl Share {
             Of::Torque => Of::Torque,
             Of::Vertical(least) => Of::Vertical(T::from(least)),
             Of::Friction(mu) => Of::Friction(T::from(mu)),
-            Of::Actuator { bound, torque, rate, friction } => {
-                let friction = friction.map(Friction::cast);
-                Of::Actuator { bound: bound.into(), torque: torque.into(), rate, friction }
+            Of::Actuator { bound, torque, rate, passive } => {
+                let passive = passive.map(Passive::cast);
+                Of::Actuator { bound: bound.into(), torque: torque.into(), rate, passive }
             }
         };
         of.value(self.offset, self.weight, v)

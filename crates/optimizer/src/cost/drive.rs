@@ -4,22 +4,23 @@
 //! Σ |Γᵢ q̇| is |Γ q̇|: counted like this, a gait whose legs share as equals costs as much on its real joints as on its virtual
 //! ones, and unequal shares cost more.
 //!
-//! Where there is friction the motor gives more than what moves the robot. Dry friction has a sign, that of the rate, and jumps with
+//! Where there is a spring or friction the motor gives more or less than what moves the robot. Dry friction has a sign, that of the rate, and jumps with
 //! it: whoever asks says on which `side`, −1 or 1, or 0 for all but dry friction.
 
 use crate::constraints::sharing::{Share, applies, torques};
-use crate::friction::Friction;
 use crate::instant::Quantities;
 use crate::lgl::NODES;
+use crate::passive::Passive;
 use piaffe_model::{Description, Mode};
 use smallvec::SmallVec;
 
-/// The torque of a joint as a function of an instant's quantities, and its rate.
+/// The torque of a joint as a function of an instant's quantities, its angle and its rate.
 #[derive(Clone, Debug)]
 pub struct Drive {
     torque: Torque,
+    angle: usize,
     rate: usize,
-    friction: Option<Friction>,
+    passive: Option<Passive>,
     /// The virtual leg's joint that it is, or is one of.
     pub joint: usize,
     /// How many joints do together what the virtual leg's does.
@@ -41,10 +42,10 @@ impl Drive {
     /// All of a mode of a gait. Real legs that swing do the same, so that the virtual leg's joints stand for them.
     pub fn all(d: &Description, mode: Mode) -> Vec<Drive> {
         let y = Quantities::new(d, mode);
-        let friction = Friction::all(d);
+        let passive = Passive::all(d);
         let of = |joint: usize, torque: Torque, sharing: f64| {
-            let friction = friction[joint].map(|friction| friction.shared(sharing));
-            Drive { torque, rate: y.rate(joint), friction, joint, sharing }
+            let passive = passive[joint].map(|passive| passive.shared(sharing));
+            Drive { torque, angle: y.angle(joint), rate: y.rate(joint), passive, joint, sharing }
         };
         let of_virtual = |j: usize| of(j, Torque::Virtual(y.torque(j)), 1.0);
         if mode == Mode::Flight || !applies(d) {
@@ -61,7 +62,7 @@ impl Drive {
     /// How many numbers a gradient of its power, and a matrix of second derivatives without those that are there twice, can have.
     pub fn most(&self) -> (usize, usize) {
         let entries = match &self.torque {
-            Torque::Virtual(_) => 2,
+            Torque::Virtual(_) => 2 + usize::from(self.passive.is_some()),
             Torque::Real(_) => Partials::new().inline_size(),
         };
         // An element in which the joint turns around has a part on each side.
@@ -76,12 +77,12 @@ impl Drive {
 
     /// Dry friction, N·m.
     pub fn coulomb(&self) -> f64 {
-        self.friction.map_or(0.0, |friction| friction.coulomb)
+        self.passive.map_or(0.0, |passive| passive.coulomb)
     }
 
     /// Below this rate there is none, rad/s.
     pub fn at_rest(&self) -> f64 {
-        self.friction.map_or(0.0, |friction| friction.at_rest)
+        self.passive.map_or(0.0, |passive| passive.at_rest)
     }
 
     /// N·m.
@@ -91,8 +92,8 @@ impl Drive {
             Torque::Virtual(quantity) => y[*quantity],
             Torque::Real(share) => share.value(y),
         };
-        match self.friction {
-            Some(friction) => moving + friction.damping * y[self.rate] + friction.coulomb * side,
+        match self.passive {
+            Some(passive) => moving + passive.smooth(y[self.angle], y[self.rate]) + passive.coulomb * side,
             None => moving,
         }
     }
@@ -106,8 +107,8 @@ impl Drive {
     /// The same on either side.
     pub fn torque_partials(&self, y: &[f64]) -> Partials {
         let mut partials = self.moving_partials(y);
-        if let Some(friction) = self.friction {
-            partials.push((self.rate, friction.damping));
+        if let Some(passive) = self.passive {
+            partials.extend([(self.angle, passive.stiffness), (self.rate, passive.damping)]);
         }
         partials
     }
@@ -125,8 +126,11 @@ impl Drive {
     pub fn power_partials(&self, y: &[f64], side: f64) -> Partials {
         let mut partials = self.moving_partials(y);
         partials.iter_mut().for_each(|(_, partial)| *partial *= y[self.rate]);
-        let torque = self.torque(y, side);
-        let by_rate = self.friction.map_or(torque, |friction| torque + friction.damping * y[self.rate]);
+        let mut by_rate = self.torque(y, side);
+        if let Some(passive) = self.passive {
+            partials.push((self.angle, passive.stiffness * y[self.rate]));
+            by_rate += passive.damping * y[self.rate];
+        }
         partials.push((self.rate, by_rate));
         partials
     }
@@ -147,8 +151,9 @@ impl Drive {
         for (quantity, partial) in self.moving_partials(y) {
             add(quantity, self.rate, partial);
         }
-        if let Some(friction) = self.friction {
-            add(self.rate, self.rate, 2.0 * friction.damping);
+        if let Some(passive) = self.passive {
+            add(self.angle, self.rate, passive.stiffness);
+            add(self.rate, self.rate, 2.0 * passive.damping);
         }
         self.torque_curvature(y, |a, b, second| add(a, b, y[self.rate] * second));
     }

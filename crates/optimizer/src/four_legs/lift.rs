@@ -172,9 +172,10 @@ impl Legs<'_> {
         let equations = Equations::new(self.whole, &posture, self.description.leg_length());
         let stance: Vec<usize> = m.mode.stance().into_iter().flat_map(|leg| self.members(leg)).collect();
         let (mut demand, columns) = (equations.demand(&posture.ud), equations.columns(&stance));
-        // What overcomes friction is demanded of the motors, too.
-        for ((demand, friction), rate) in demand[PLATFORM..].iter_mut().zip(&self.friction).zip(posture.rates()) {
-            friction.iter().for_each(|friction| *demand += friction.torque(*rate));
+        // What overcomes springs and friction is demanded of the motors, too.
+        let moves = posture.q.iter().zip(posture.rates());
+        for ((demand, passive), (angle, rate)) in demand[PLATFORM..].iter_mut().zip(&self.passive).zip(moves) {
+            passive.iter().for_each(|passive| *demand += passive.torque(*angle, *rate));
         }
         let equal = self.equal(&posture, &stance, m.force);
         // The platform has no motors: its six equations are the reactions' alone. In flight nothing is left to meet them: they hold,

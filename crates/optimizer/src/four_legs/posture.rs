@@ -1,6 +1,6 @@
 //! The whole robot in the motion of a gait.
 
-use crate::friction::Friction;
+use crate::passive::Passive;
 use crate::walk::{Moment, Point};
 use piaffe_model::whole::Whole;
 use piaffe_model::{Description, Gait, Rotation};
@@ -14,7 +14,7 @@ pub struct Legs<'a> {
     /// Of each real leg the virtual one.
     pub legs: Vec<usize>,
     /// Of each joint of the whole robot its part of what the virtual leg's has to overcome.
-    pub friction: Vec<Option<Friction>>,
+    pub passive: Vec<Option<Passive>>,
 }
 
 /// The whole robot at one instant. Axes of a [`Whole`]: speeds u and their derivatives in those of the platform.
@@ -44,10 +44,10 @@ impl<'a> Legs<'a> {
                 w.legs[real].joints.clone().zip(virtual_leg.first_joint..).for_each(|(j, of)| joints[j] = of);
             }
         }
-        let of_virtual = Friction::all(description);
-        let friction =
-            joints.iter().map(|j| of_virtual[*j].map(|friction| friction.shared(sharing(description, *j)))).collect();
-        Some(Legs { whole, description, joints, legs, friction })
+        let of_virtual = Passive::all(description);
+        let passive =
+            joints.iter().map(|j| of_virtual[*j].map(|passive| passive.shared(sharing(description, *j)))).collect();
+        Some(Legs { whole, description, joints, legs, passive })
     }
 
     /// The real legs of a virtual one.
@@ -62,8 +62,8 @@ impl<'a> Legs<'a> {
 
     /// Whether dry friction has the same sign in all joints.
     pub fn rubs_alike(&self, a: &Posture, b: &Posture) -> bool {
-        let mut joints = self.friction.iter().zip(a.rates().iter().zip(b.rates()));
-        joints.all(|(friction, (a, b))| friction.is_none_or(|friction| friction.side(*a) == friction.side(*b)))
+        let mut joints = self.passive.iter().zip(a.rates().iter().zip(b.rates()));
+        joints.all(|(passive, (a, b))| passive.is_none_or(|passive| passive.side(*a) == passive.side(*b)))
     }
 
     /// The robot's weight, N.

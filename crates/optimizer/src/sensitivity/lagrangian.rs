@@ -223,9 +223,11 @@ impl<'a> Slopes<'a> {
             let y = quantities(d, mode, &swings, &state, share, &durations);
             for (quantity, weight) in weights {
                 lagrangian += y[*quantity].scale(*weight);
-                // A motor also overcomes viscous friction, which is no quantity.
+                // A motor also overcomes springs and viscous friction, which are no quantities.
                 if let Some(joint) = numbers.joints.get(*quantity) {
-                    lagrangian += (joint.damping * state.qd[*quantity].value().into()).scale(*weight);
+                    let [angle, rate] = [&state.q, &state.qd].map(|list| Number::constant(list[*quantity].value()));
+                    let passive = joint.stiffness * (angle - joint.rest) + joint.damping * rate;
+                    lagrangian += passive.scale(*weight);
                 }
             }
             for (constraint, multiplier) in rows {
