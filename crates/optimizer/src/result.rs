@@ -4,7 +4,6 @@ use crate::cycle::{Label, apart, theta};
 use crate::examine::Examination;
 use crate::four_legs::RealLegs;
 use crate::optimality::Optimality;
-use crate::search::bend::Bend;
 use crate::search::evidence::Effort;
 use crate::search::local::Local;
 use crate::search::multi_start::{Found, Settings};
@@ -393,10 +392,7 @@ impl GaitResult {
             return;
         }
         if found.motion.as_ref().is_some_and(exists) {
-            let attempt = found.attempt.as_ref();
-            let bend = attempt.and_then(|local| Bend::of(gait.description(), self.criterion, &local.motion));
-            let why = bend.map_or(String::new(), |bend| format!("; {bend}"));
-            self.message = format!("motions exist at this speed, but no start led to an optimum of the criterion{why}");
+            self.message = "motions exist at this speed, but no start led to an optimum of the criterion".into();
             return;
         }
         let Some(local) = found.failure.as_ref() else {

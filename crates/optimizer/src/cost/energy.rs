@@ -8,11 +8,12 @@
 //! either side the power is a quartic again. Where they meet it is the same on both, so that their motion does not matter either.
 
 use super::sides::Sides;
-use super::{Bend, Integral, Kink, Signs};
+use super::{Bend, Going, Integral, Kink, Signs};
 use crate::flow::Mesh;
 use crate::instant::Instants;
 use crate::lgl::NODES;
 use crate::polynomial::{Roots, evaluate, may_change_sign, roots};
+use smallvec::SmallVec;
 use std::array::from_fn;
 
 pub fn integrate(mesh: &Mesh, instants: &Instants, integral: &mut Integral) {
@@ -61,7 +62,7 @@ pub(super) fn sides(mesh: &Mesh, instants: &Instants, integral: &Integral, k: us
     }
     let rates = from_fn(|i| instants.value(e * (NODES - 1) + i, drive.rate()));
     let going = integral.going.iter().filter(|going| (going.joint, going.element) == (drive.joint, e));
-    Sides::new(mesh, &rates, drive.at_rest(), going.map(|going| going.sign).next())
+    Sides::new(mesh, &rates, drive.at_rest(), &going.copied().collect::<SmallVec<[Going; 2]>>())
 }
 
 /// Joints that are held still. To move one costs (|Γ| or c, whichever is more) per rate, and besides, in the direction in which the

@@ -91,6 +91,19 @@ pub struct Going {
     pub element: usize,
     /// Of its rate.
     pub sign: f64,
+    /// Where it comes nearest to turning around.
+    pub nearest: Nearest,
+}
+
+/// Where in an element a joint comes nearest to turning around.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Nearest {
+    /// Where its rate is stationary.
+    Inside,
+    /// With the phase, which begins with the element.
+    Beginning,
+    /// With the phase, which ends with the element.
+    End,
 }
 
 /// A power in an element in which dry friction keeps its sign.

@@ -1,5 +1,6 @@
 //! In which parts of an element a joint moves which way: dry friction changes its sign between them.
 
+use super::{Going, Nearest};
 use crate::flow::Mesh;
 use crate::lgl::NODES;
 use crate::polynomial::{Roots, derivative, evaluate, may_change_sign, roots};
@@ -30,7 +31,7 @@ impl Sides {
     }
 
     /// A joint that is `going` one way does not turn where its rate is nearest to zero on the other side.
-    pub fn new(mesh: &Mesh, rates: &[f64; NODES], at_rest: f64, going: Option<f64>) -> Sides {
+    pub fn new(mesh: &Mesh, rates: &[f64; NODES], at_rest: f64, going: &[Going]) -> Sides {
         if rates.iter().all(|rate| rate.abs() <= at_rest) {
             return Sides::none();
         }
@@ -39,7 +40,7 @@ impl Sides {
         if may_change_sign(&rate) {
             roots(&rate, &mut turns);
         }
-        if let Some(at) = going.and_then(|sign| nearest_halt(&rate, sign)) {
+        for at in going.iter().filter_map(|going| nearest_halt(&rate, going)) {
             let (before, after) =
                 (turns.iter().rposition(|turn| turn.0 < at), turns.iter().position(|turn| turn.0 > at));
             for turn in after.into_iter().chain(before) {
@@ -48,7 +49,8 @@ impl Sides {
         }
         let mut parts = SmallVec::new();
         let mut from = 0.0;
-        let undisturbed = going.unwrap_or(if evaluate(&rate, 0.5) >= 0.0 { 1.0 } else { -1.0 });
+        let middle = if evaluate(&rate, 0.5) >= 0.0 { 1.0 } else { -1.0 };
+        let undisturbed = going.first().map_or(middle, |going| going.sign);
         let mut sign = turns.first().map_or(undisturbed, |turn| -turn.1.signum());
         for to in turns.iter().map(|turn| turn.0).chain([1.0]) {
             parts.push(Side { within: [from, to], sign });
@@ -58,8 +60,14 @@ impl Sides {
     }
 }
 
-/// Where the rate of a joint that goes this way is on the other side of zero, and least so.
-fn nearest_halt(rate: &[f64; NODES], sign: f64) -> Option<f64> {
+/// Where the rate of a joint that goes on is on the other side of zero, and least so.
+fn nearest_halt(rate: &[f64; NODES], going: &Going) -> Option<f64> {
+    let sign = going.sign;
+    match going.nearest {
+        Nearest::Inside => {}
+        Nearest::Beginning => return (sign * evaluate(rate, 0.0) < 0.0).then_some(0.0),
+        Nearest::End => return (sign * evaluate(rate, 1.0) < 0.0).then_some(1.0),
+    }
     let (mut buffer, mut stationary) = ([0.0; NODES], Roots::new());
     roots(derivative(rate, &mut buffer), &mut stationary);
     let halts =

@@ -158,8 +158,14 @@ impl<'a> Linearized<'a> {
         cycle.hold(&still);
         cycle.let_go();
         let scale = cycle.scale();
-        let multipliers = multipliers(&mut cycle, theta, scale)?;
-        Ok(Linearized { cycle, theta: theta.to_vec(), multipliers })
+        let mut found = multipliers(&mut cycle, theta, scale.clone())?;
+        let overpaid = cycle.overpaid(&halts, &found.inequalities);
+        if !overpaid.is_empty() {
+            // These hold no optimum: without them it shows.
+            cycle.let_turn(&overpaid);
+            found = multipliers(&mut cycle, theta, scale)?;
+        }
+        Ok(Linearized { cycle, theta: theta.to_vec(), multipliers: found })
     }
 
     fn holds(&self) -> bool {

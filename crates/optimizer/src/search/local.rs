@@ -253,8 +253,17 @@ impl Task<'_> {
                 continue;
             }
             kept.extend(more);
-            let local = self.solve(&theta, &Way { halts: &kept, ..Way::CAREFUL }, observe).local;
-            iterations += local.iterations;
+            let mut start = theta;
+            let local = loop {
+                let Solved { local, overpaid, .. } = self.solve(&start, &Way { halts: &kept, ..Way::CAREFUL }, observe);
+                iterations += local.iterations;
+                if overpaid.is_empty() {
+                    break local;
+                }
+                // Where a turn costs less than to avoid it.
+                kept.retain(|halt| !overpaid.contains(halt));
+                start = local.theta;
+            };
             let settled = local.is_settled();
             found = Some(Local { iterations, ..local });
             if settled {
@@ -270,7 +279,7 @@ impl Task<'_> {
         let mut start = start.to_vec();
         let mut iterations = 0;
         loop {
-            let Solved { local, loose } = self.solve(&start, &Way { still: &held, ..Way::CAREFUL }, observe);
+            let Solved { local, loose, .. } = self.solve(&start, &Way { still: &held, ..Way::CAREFUL }, observe);
             iterations += local.iterations;
             let Some(loose) = loose else { return Local { iterations, ..local } };
             held.retain(|still| !loose.joints.contains(still));
@@ -312,7 +321,12 @@ impl Task<'_> {
             better.solution.iterations += found.solution.iterations;
             (found, cycle) = (better, finer);
         }
-        finish(&mut cycle, found.solution, found.violation)
+        let overpaid = if found.solution.status.is_optimal() && cycle.simulate(&found.solution.x).is_ok() {
+            cycle.overpaid(way.halts, &found.solution.inequality_multipliers)
+        } else {
+            Vec::new()
+        };
+        Solved { overpaid, ..finish(&mut cycle, found.solution, found.violation) }
     }
 }
 
@@ -453,13 +467,15 @@ fn finish(cycle: &mut Cycle, mut solution: Solution, violation: f64) -> Solved {
         iterations: solution.iterations,
         conflicts,
     };
-    Solved { local, loose }
+    Solved { local, loose, overpaid: Vec::new() }
 }
 
-/// Where a problem with joints held still ended.
+/// Where a problem with joints held still, or kept from turning around, ended.
 struct Solved {
     local: Local,
     loose: Option<Loose>,
+    /// Joints that had better turn around.
+    overpaid: Vec<Halt>,
 }
 
 /// Held joints that had better move, and a motion in which they begin to.

@@ -1,7 +1,6 @@
 //! Finding optima: where to start, how to descend, and what to keep.
 
 pub mod atlas;
-pub mod bend;
 pub mod branch;
 pub mod crossover;
 pub mod evidence;
