@@ -14,8 +14,9 @@ use piaffe::motion::{Criterion, Motion};
 use piaffe::result::{GaitResult, Status};
 use piaffe::search::local::{Local, Task};
 use piaffe::search::multi_start::{Settings, search};
+use piaffe::search::refine::dips;
 use piaffe::sensitivity::sensitivities;
-use piaffe::sqp::Control;
+use piaffe::sqp::{Control, Problem, Values};
 use piaffe::units::Units;
 use piaffe::verify::{sample, verify};
 use piaffe::walk::{Moment, Walk};
@@ -271,4 +272,63 @@ fn joints_come_to_rest_at_ends_of_phases() {
         }
     }
     assert!(resting_at_ends >= 5, "{resting_at_ends}");
+}
+
+/// A motor that has all its torque to give where its joint turns around: the limit jumps there by what dry friction takes, between two nodes.
+/// It holds on both sides of the turn, which moves.
+#[test]
+fn limits_hold_on_both_sides_of_a_turn() {
+    let robot = Robot::read(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/friction/desk")).unwrap();
+    let gait = robot.gait("bound").unwrap();
+    let (criterion, speed) = (Criterion::Energy, 0.5);
+    let settings = Settings { starts: Some(4), seed: 1, examination: Examination::Full };
+    let found = search(&gait, criterion, speed, &settings, &|_| {});
+    let mut result = GaitResult::new(&gait, criterion, speed, &found, &settings, || 0.0);
+    result.examine(&gait, Examination::Full);
+    assert_eq!(result.status, Status::Optimal, "{}", result.message);
+    assert!(result.certificate.as_ref().is_some_and(|c| c.is_certified()));
+
+    let theta = theta(&result.motion().unwrap());
+    let mut cycle = Cycle::resolving(&gait, criterion, speed, &theta).unwrap();
+    dips(&cycle).unwrap().impose(&mut cycle).unwrap();
+    let (n, m) = (cycle.dimension(), cycle.inequalities());
+    let mut values = Values::zeros(cycle.equalities(), m);
+    let mut row = |cycle: &mut Cycle, theta: &[f64], i: usize| {
+        cycle.evaluate(theta, &mut values).unwrap();
+        cycle.linearize(theta).unwrap();
+        let mut row = vec![0.0; n];
+        cycle.inequality_row(i, &mut row);
+        (values.inequalities[i], row)
+    };
+    row(&mut cycle, &theta, 0);
+    let at_turns: Vec<usize> = (0..m).filter(|i| !cycle.row_turn(*i).is_empty()).collect();
+    assert!(!at_turns.is_empty());
+    let scale = cycle.scale();
+    for i in at_turns {
+        let (_, gradient) = row(&mut cycle, &theta, i);
+        let largest = gradient.iter().zip(&scale).fold(0.0f64, |most, (by, scale)| most.max((by * scale).abs()));
+        let (mut mu, mut hessian) = (vec![0.0; m], vec![0.0; n * n]);
+        mu[i] = 1.0;
+        assert!(cycle.hessian(&vec![0.0; cycle.equalities()], &mu, &mut hessian));
+        let mut without = vec![0.0; n * n];
+        assert!(cycle.hessian(&vec![0.0; cycle.equalities()], &vec![0.0; m], &mut without));
+        let second = |j: usize, k: usize| (without[j * n + k] - hessian[j * n + k]) * scale[j] * scale[k];
+        let bend = (0..n * n).fold(0.0f64, |most, at| most.max(second(at / n, at % n).abs()));
+        for k in 0..n {
+            let h = 1e-6 * scale[k];
+            let [above, below] = [h, -h].map(|h| {
+                let mut moved = theta.clone();
+                moved[k] += h;
+                row(&mut cycle, &moved, i)
+            });
+            let difference = (above.0 - below.0) / (2.0 * h) * scale[k];
+            let exact = gradient[k] * scale[k];
+            assert!((difference - exact).abs() < 1e-6 * largest, "{i} by {k}: {difference} {exact} of {largest}");
+            for j in 0..n {
+                let difference = (above.1[j] - below.1[j]) / (2.0 * h) * scale[k] * scale[j];
+                let exact = second(j, k);
+                assert!((difference - exact).abs() < 1e-5 * bend, "{i} by {j}, {k}: {difference} {exact} of {bend}");
+            }
+        }
+    }
 }

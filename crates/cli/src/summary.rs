@@ -210,6 +210,14 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
     if description.contradictions().is_empty() {
         writeln!(out, "  search          {}", confidence(r))?;
     }
+    if let Some(cheaper) = r.cheaper_motion {
+        let unit = r.criterion.unit();
+        writeln!(
+            out,
+            "  cheaper         a motion within all limits costs {} {unit}: a better optimum exists, and was not found",
+            decimal(cheaper, 4)
+        )?;
+    }
     if r.local_optima.len() > 1 {
         writeln!(out, "  local optima    (cost, phases, how many starts led there)")?;
         for o in &r.local_optima {

@@ -21,8 +21,8 @@ const ABSOLUTE: f64 = 1e-13;
 const GIVEN: [&str; 7] =
     ["gait", "criterion", "speed", "variables", "fingerprint", "specification", "limits_at_real_legs"];
 /// How it was found. That says nothing about the motion, and cannot be seen from it.
-const HISTORY: [&str; 7] =
-    ["local_optima", "virtual_cost", "conflicts", "nearest_speed", "search", "seconds", "version"];
+const HISTORY: [&str; 8] =
+    ["cheaper_motion", "local_optima", "virtual_cost", "conflicts", "nearest_speed", "search", "seconds", "version"];
 /// What is absent, which is compared with what is.
 const ABSENT: &str = "not_examined";
 /// What an optimum may leave open, if it says so: what takes longest of its verdict, and what is told beyond it.
@@ -195,6 +195,16 @@ fn contradicted(entry: &str, result: &GaitResult, cost: Option<f64>) -> Option<S
         ("local_optima", _) if result.variables.is_empty() => Some("there is no motion, and these were found".into()),
         ("local_optima", Some(cost)) if found.iter().all(|optimum| !near(optimum.cost, cost)) => {
             Some(format!("the optimum, which costs {}, is none of those that were found", digits(cost)))
+        }
+        ("local_optima", Some(cost)) if found.iter().any(|optimum| optimum.cost < (1.0 - SAME_OPTIMUM) * cost) => {
+            let least = found.iter().map(|optimum| optimum.cost).fold(f64::INFINITY, f64::min);
+            Some(format!("one that costs {} was found, and the result costs {}", digits(least), digits(cost)))
+        }
+        ("local_optima", _) if found.iter().map(|optimum| optimum.reached).sum::<usize>() > effort.starts => {
+            Some(format!("more than the {} starts of the search led to them", effort.starts))
+        }
+        ("cheaper_motion", Some(cost)) if result.cheaper_motion.is_some_and(|cheaper| cheaper >= cost) => {
+            Some(format!("it costs no less than the result, {}", digits(cost)))
         }
         ("search", _) if effort.successes > effort.starts => {
             Some(format!("{} of {} starts led to an optimum", effort.successes, effort.starts))

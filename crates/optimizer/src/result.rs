@@ -118,6 +118,9 @@ pub struct GaitResult {
     pub conflicts: Vec<ConflictEntry>,
     /// For an infeasible problem: the nearest speed found at which the same search finds an optimum, m/s.
     pub nearest_speed: Option<f64>,
+    /// What a motion costs that keeps to all limits, where it is less than the optimum: a better optimum exists, and was not found.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cheaper_motion: Option<f64>,
     /// All distinct local optima found, best first.
     #[serde(default)]
     pub local_optima: Vec<LocalOptimum>,
@@ -232,6 +235,9 @@ impl GaitResult {
         }
         if found.optima.is_empty() {
             result.explain(gait, found);
+        } else if let Some(cost) = result.cost {
+            result.cheaper_motion =
+                found.motion.as_ref().and_then(|local| result.receipt_of(gait, local)).filter(|less| *less < cost);
         }
         result.seconds = seconds();
         result
@@ -280,6 +286,7 @@ impl GaitResult {
             not_examined: Vec::new(),
             conflicts: Vec::new(),
             nearest_speed: None,
+            cheaper_motion: None,
             local_optima: Vec::new(),
             search,
             fingerprint: d.fingerprint(),
@@ -381,17 +388,20 @@ impl GaitResult {
         self.not_examined = if holds { self.absent("not looked at") } else { Vec::new() };
     }
 
+    /// What the motion of `local` costs, if it keeps to all limits by a receipt.
+    fn receipt_of(&self, gait: &dyn Gait, local: &Local) -> Option<f64> {
+        let receipt = verify(gait.description(), &local.motion, self.speed, verdict::GRID).ok()?;
+        let holds = receipt.max_violation <= verdict::VIOLATION && receipt.cycle_error <= verdict::CYCLE_ERROR;
+        holds.then(|| receipt.costs.of(self.criterion))
+    }
+
     /// Says why there is no optimum.
     fn explain(&mut self, gait: &dyn Gait, found: &Found) {
-        let exists = |local: &Local| {
-            let receipt = verify(gait.description(), &local.motion, self.speed, verdict::GRID);
-            receipt.is_ok_and(|r| r.max_violation <= verdict::VIOLATION && r.cycle_error <= verdict::CYCLE_ERROR)
-        };
         if let Some(message) = impossible(gait.description()) {
             (self.status, self.message) = (Status::Infeasible, message);
             return;
         }
-        if found.motion.as_ref().is_some_and(exists) {
+        if found.motion.as_ref().is_some_and(|local| self.receipt_of(gait, local).is_some()) {
             self.message = "motions exist at this speed, but no start led to an optimum of the criterion".into();
             return;
         }

@@ -49,7 +49,8 @@ pub enum Form<T = f64> {
     /// A limit on one of the real legs.
     Share(Share<T>),
     /// `offset + by_torque · Γ + by_rate · q̇`, where Γ is that of a motor with something to overcome; quantities with these factors.
-    Motor { offset: T, torque: (usize, T), angle: usize, rate: (usize, T), passive: Passive<T> },
+    /// `side`: with dry friction as if the joint turned that way, −1 or 1; else as it turns.
+    Motor { offset: T, torque: (usize, T), angle: usize, rate: (usize, T), passive: Passive<T>, side: Option<f64> },
 }
 
 /// All path constraints of phase `k` of a gait.
@@ -105,8 +106,12 @@ impl<T: Scalar> PathConstraint<T> {
             Form::Linear { offset, terms } => *offset + terms.iter().fold(T::zero(), |sum, (q, c)| sum + *c * y[*q]),
             Form::Cone { normal, factor, tangential } => *factor * y[*normal] - norm(y, tangential),
             Form::Share(share) => share.value(y),
-            Form::Motor { offset, torque, angle, rate, passive } => {
-                let motor = y[torque.0] + passive.torque(y[*angle], y[rate.0]);
+            Form::Motor { offset, torque, angle, rate, passive, side } => {
+                let motor = y[torque.0]
+                    + match side {
+                        Some(side) => passive.smooth(y[*angle], y[rate.0]) + passive.coulomb.scale(*side),
+                        None => passive.torque(y[*angle], y[rate.0]),
+                    };
                 *offset + rate.1 * y[rate.0] + torque.1 * motor
             }
         };
@@ -115,6 +120,14 @@ impl<T: Scalar> PathConstraint<T> {
 }
 
 impl PathConstraint {
+    /// Of a limit of a motor that overcomes dry friction: which quantity the joint's rate is, and for which side it is meant, if for one.
+    pub fn dry(&self) -> Option<(usize, Option<f64>)> {
+        match &self.form {
+            Form::Motor { rate, passive, side, .. } if passive.coulomb != 0.0 => Some((rate.0, *side)),
+            _ => None,
+        }
+    }
+
     /// Calls `add(quantity, partial derivative)` for each quantity that the value depends on.
     #[inline]
     pub fn partials(&self, y: &[f64], mut add: impl FnMut(usize, f64)) {
@@ -128,7 +141,7 @@ impl PathConstraint {
                 }
             }
             Form::Share(share) => share.partials(y, |q, partial| add(q, partial / self.unit)),
-            // Where the rate changes its sign the limit jumps; it has no slope there.
+            // Where the rate changes its sign the limit jumps (`side`).
             Form::Motor { torque, angle, rate, passive, .. } => {
                 add(torque.0, torque.1 / self.unit);
                 add(*angle, torque.1 * passive.stiffness / self.unit);

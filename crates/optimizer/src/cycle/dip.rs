@@ -5,9 +5,12 @@
 //! of its own, with exact derivatives: to first order the minimum's motion does not matter (envelope
 //! theorem), to second order it does. What the quartic misses hardly depends on Θ; it is measured on a
 //! fine grid (`search::refine`) and added as an offset.
+//!
+//! A limit of a motor that overcomes dry friction jumps where the joint turns around. One that is meant for a side is lowest among the
+//! instants of that side, which may be a turn: that moves with the rate, to first order already.
 
 use crate::lgl::{Lobatto, NODES};
-use crate::polynomial::{Roots, derivative, evaluate, roots};
+use crate::polynomial::{Roots, derivative, evaluate, may_change_sign, roots};
 
 /// A path constraint imposed at its lowest point in an element.
 #[derive(Clone, Debug)]
@@ -33,6 +36,12 @@ impl Dip {
         place && (self.lowest.at - other.lowest.at).abs() < SAME
     }
 
+    /// How it depends on a joint's rate besides, where it is lowest at a turn: node, quantity, derivative.
+    pub fn of_turn(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+        let turn = self.lowest.turn.iter();
+        turn.flat_map(|turn| turn.by_rate.iter().enumerate().map(|(i, by)| (self.first() + i, turn.rate, *by)))
+    }
+
     /// First node of its element.
     pub fn first(&self) -> usize {
         self.element * (NODES - 1)
@@ -49,9 +58,25 @@ pub struct Lowest {
     pub shape: [f64; NODES],
     /// Their slopes: the quartic's slope is `slopes · values`.
     pub slopes: [f64; NODES],
-    /// The quartic's second derivative; infinite at an end of the element, where the minimum stays.
+    /// The quartic's second derivative; infinite at an end of the element, where the minimum stays, and at a turn.
     pub curvature: f64,
+    pub turn: Option<Turn>,
 }
+
+/// A lowest point where a joint turns around: it moves with the root of the joint's rate.
+#[derive(Clone, Debug)]
+pub struct Turn {
+    /// Which quantity the rate is.
+    pub rate: usize,
+    /// ∂value/∂(rate at the nodes).
+    pub by_rate: [f64; NODES],
+    /// The value's second derivative is `a bᵀ + b aᵀ`, where a is the gradient of the rate at the turn, and b has these weights of the
+    /// gradients of constraint and rate at the nodes.
+    pub bend: [[f64; NODES]; 2],
+}
+
+/// Room (scaled) of a limit that is meant for a side to which the joint never turns in an element.
+const VOID: f64 = 1.0;
 
 impl Lowest {
     /// Of several minima that nearest to `from`: a row must not jump from one to another.
@@ -70,7 +95,92 @@ impl Lowest {
         // A quartic has a minimum on an interval; without numbers it has none.
         let (at, curvature) = nearest.unwrap_or((from, f64::INFINITY));
         let value = evaluate(&quartic, at);
-        Lowest { at, value, shape: lobatto.values(at), slopes: lobatto.slopes(at), curvature }
+        Lowest { at, value, shape: lobatto.values(at), slopes: lobatto.slopes(at), curvature, turn: None }
+    }
+
+    /// The same among the instants at which a joint with these rates, which are that quantity, turns to a side.
+    pub fn on_side(
+        lobatto: &Lobatto,
+        values: &[f64; NODES],
+        rates: [f64; NODES],
+        rate: usize,
+        side: f64,
+        from: f64,
+    ) -> Lowest {
+        let all = Lowest::all_on_side(lobatto, values, rates, rate, side);
+        let nearest = all.into_iter().min_by(|a, b| (a.at - from).abs().total_cmp(&(b.at - from).abs()));
+        let none = [0.0; NODES];
+        nearest.unwrap_or(Lowest {
+            at: from,
+            value: VOID,
+            shape: none,
+            slopes: none,
+            curvature: f64::INFINITY,
+            turn: None,
+        })
+    }
+
+    /// All minima among these instants, in order.
+    pub fn all_on_side(
+        lobatto: &Lobatto,
+        values: &[f64; NODES],
+        rates: [f64; NODES],
+        rate: usize,
+        side: f64,
+    ) -> Vec<Lowest> {
+        let [quartic, speed] = [values, &rates].map(|values| lobatto.interpolate(values));
+        let mut turns = Roots::new();
+        if may_change_sign(&speed) {
+            roots(&speed, &mut turns);
+        }
+        let mut buffer = [0.0; NODES];
+        let slope = derivative(&quartic, &mut buffer);
+        let mut stationary = Roots::new();
+        roots(slope, &mut stationary);
+        let lowest = |at: f64, curvature: f64| {
+            let (shape, slopes) = (lobatto.values(at), lobatto.slopes(at));
+            Lowest { at, value: evaluate(&quartic, at), shape, slopes, curvature, turn: None }
+        };
+        let mut all = Vec::new();
+        let borders = [0.0].into_iter().chain(turns.iter().map(|turn| turn.0)).chain([1.0]);
+        let borders: Vec<f64> = borders.collect();
+        for (k, part) in borders.windows(2).enumerate() {
+            let [first, last] = [part[0], part[1]];
+            if side * evaluate(&speed, 0.5 * (first + last)) <= 0.0 {
+                continue;
+            }
+            let inside = stationary.iter().filter(|(at, second)| first < *at && *at < last && *second > 0.0);
+            all.extend(inside.map(|(at, second)| lowest(*at, *second)));
+            for (at, falls_off, border) in
+                [(first, evaluate(slope, first) >= 0.0, k), (last, evaluate(slope, last) <= 0.0, k + 1)]
+            {
+                if !falls_off {
+                    continue;
+                }
+                let is_turn = border > 0 && border < borders.len() - 1;
+                let turn = is_turn.then(|| Turn::new(lobatto, &quartic, &speed, rate, at));
+                all.push(Lowest { turn, ..lowest(at, f64::INFINITY) });
+            }
+        }
+        all.sort_by(|a, b| a.at.total_cmp(&b.at));
+        all
+    }
+}
+
+impl Turn {
+    /// At a root of a joint's rate: both are quartics in an element.
+    fn new(lobatto: &Lobatto, value: &[f64; NODES], speed: &[f64; NODES], rate: usize, at: f64) -> Turn {
+        let derivatives = |quartic: &[f64; NODES]| {
+            let (mut first, mut second) = ([0.0; NODES], [0.0; NODES]);
+            let first = derivative(quartic, &mut first);
+            [evaluate(first, at), evaluate(derivative(first, &mut second), at)]
+        };
+        let ([by, bend], [speeds, bends]) = (derivatives(value), derivatives(speed));
+        let (shape, slopes, ratio) = (lobatto.values(at), lobatto.slopes(at), by / speeds);
+        let curved = 0.5 * (bend - ratio * bends) / (speeds * speeds);
+        let by_value = slopes.map(|slope| -slope / speeds);
+        let by_speed = std::array::from_fn(|i| ratio / speeds * slopes[i] + curved * shape[i]);
+        Turn { rate, by_rate: shape.map(|share| -ratio * share), bend: [by_value, by_speed] }
     }
 }
 

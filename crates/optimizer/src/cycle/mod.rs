@@ -27,7 +27,7 @@ use crate::cost::{Integral, integrate};
 use crate::flow::Undefined;
 use crate::instant::Glance;
 use crate::lgl::NODES;
-use dip::Dip;
+use dip::{Dip, Lowest};
 pub use halt::Halt;
 use hessian::Workspace;
 use phase::Phase;
@@ -292,6 +292,33 @@ impl<'a> Cycle<'a> {
         let p = &self.phases[phase];
         let values = p.in_element(&p.path[constraint], element);
         [values, p.mesh.lobatto.interpolate(&values)]
+    }
+
+    /// Whether a limit jumps in the element around `s`, because its joint turns around there.
+    pub fn is_torn(&self, phase: usize, constraint: usize, s: f64) -> bool {
+        let p = &self.phases[phase];
+        let turns = |(rate, _)| {
+            let rates = p.of_element(rate, p.mesh.element(s));
+            rates.iter().any(|rate| *rate <= 0.0) && rates.iter().any(|rate| *rate >= 0.0)
+        };
+        p.path[constraint].dry().is_some_and(turns)
+    }
+
+    /// Where a limit that is meant for a side is lowest inside the elements in which its joint turns around, as shares of the phase.
+    pub fn lows_beside_turns(&self, phase: usize, constraint: usize) -> Vec<f64> {
+        let p = &self.phases[phase];
+        let Some((rate, Some(side))) = p.path[constraint].dry() else { return Vec::new() };
+        let in_element = |element: usize| {
+            let share = move |at: f64| (element as f64 + at) / p.mesh.elements as f64;
+            let values = p.in_element(&p.path[constraint], element);
+            let all = match self.is_torn(phase, constraint, share(0.5)) {
+                true => Lowest::all_on_side(&p.mesh.lobatto, &values, p.of_element(rate, element), rate, side),
+                false => Vec::new(),
+            };
+            // What is lowest at a node is a row of its own there.
+            all.into_iter().map(|lowest| lowest.at).filter(|at| 0.0 < *at && *at < 1.0).map(share)
+        };
+        (0..p.mesh.elements).flat_map(in_element).collect()
     }
 
     /// Number of variables Θ.

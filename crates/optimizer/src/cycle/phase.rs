@@ -147,7 +147,18 @@ impl Phase {
 
     /// Where a path constraint is lowest in an element of the last simulated motion, as the quartic has it, near `from`.
     pub fn lowest(&self, constraint: &PathConstraint, element: usize, from: f64) -> Lowest {
-        Lowest::of(&self.mesh.lobatto, &self.in_element(constraint, element), from)
+        let (lobatto, values) = (&self.mesh.lobatto, self.in_element(constraint, element));
+        match constraint.dry() {
+            Some((rate, Some(side))) => {
+                Lowest::on_side(lobatto, &values, self.of_element(rate, element), rate, side, from)
+            }
+            _ => Lowest::of(lobatto, &values, from),
+        }
+    }
+
+    /// Values of a quantity at the nodes of an element of the last simulated motion.
+    pub fn of_element(&self, quantity: usize, element: usize) -> [f64; NODES] {
+        std::array::from_fn(|i| self.instants.value(element * (NODES - 1) + i, quantity))
     }
 
     /// Values of a path constraint at the nodes of an element of the last simulated motion.

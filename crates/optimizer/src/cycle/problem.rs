@@ -80,6 +80,12 @@ impl Cycle<'_> {
         }
     }
 
+    /// How inequality row `i` depends on a joint's rate besides, where it is imposed at a turn: node, quantity, derivative.
+    pub fn row_turn(&self, i: usize) -> Vec<(usize, usize, f64)> {
+        let Row::Dip { phase, index } = self.rows.inequalities[i] else { return Vec::new() };
+        self.phases[phase].dips[index].of_turn().collect()
+    }
+
     /// The nodes of its phase at which inequality row `i` takes its values, with their weights; none of an impact.
     pub fn row_nodes(&self, i: usize) -> Vec<(usize, f64)> {
         match self.rows.inequalities[i] {
@@ -407,6 +413,7 @@ impl Problem for Cycle<'_> {
                 for (i, share) in dip.lowest.shape.iter().enumerate() {
                     p.add_constraint(d, dip.first() + i, &p.path[dip.constraint], *share, &mut local);
                 }
+                dip.of_turn().for_each(|(node, quantity, by)| p.add_quantity(d, node, quantity, by, &mut local));
                 p.by_theta.pull(&local, 1.0, row);
             }
             Row::Impact { phase, constraint } => {
@@ -447,6 +454,8 @@ impl Problem for Cycle<'_> {
                 for (dip, sum) in p.dips.iter().zip(&mut dips) {
                     if let Some(share) = node.checked_sub(dip.first()).and_then(|i| dip.lowest.shape.get(i)) {
                         *sum += share * along(&p.path[dip.constraint]);
+                        let here = dip.of_turn().filter(|(other, ..)| *other == node);
+                        here.for_each(|(_, quantity, by)| *sum += by * change[quantity]);
                     }
                 }
                 if !parts.is_empty() {

@@ -26,9 +26,17 @@ const AGREEING: usize = 3;
 /// As many where neighbours let expect that there is no motion.
 const IN_VAIN: usize = 2;
 
+/// A motion that costs less by this share than the best optimum is told.
+const CHEAPER: f64 = 1e-3;
+/// So many descents that got lost below the best optimum are followed up.
+const REPAIRED: usize = 4;
+
 /// Walks drawn for each random start of the first batch, and at most for one of the later ones.
 const DRAWS: usize = 3;
 const MOST_DRAWS: usize = 8;
+
+/// And so many where the dynamics admit none of them.
+const DRAWS_IN_VAIN: usize = 64;
 
 /// Violation (scaled, summed) of a walk beyond which its descent takes long and seldom ends in an optimum.
 const HOPELESS: f64 = 300.0;
@@ -72,10 +80,8 @@ pub struct Found {
     pub optima: Vec<Optimum>,
     /// Of the starts without an optimum, the one that came closest: its conflicts explain why.
     pub failure: Option<Local>,
-    /// Without an optimum: the cheapest motion within all limits that is known nevertheless.
+    /// The cheapest motion within all limits that is known, where no optimum is as cheap.
     pub motion: Option<Local>,
-    /// And the cheapest end of a descent that keeps to all limits, at its instants at least.
-    pub attempt: Option<Local>,
     pub effort: Effort,
 }
 
@@ -155,21 +161,41 @@ pub fn search_watched(
         ends.par_extend(batch.into_par_iter().map(|k| run(k, found.optima.first())));
         found = collect(task, &ends);
     }
-    if !found.optima.is_empty() {
-        return found;
-    }
-    // Descents may fail where there are motions: from these they have no limit to find their way to.
-    let known = motions(task, settings.seed, found.effort.starts, neighbours, watch);
-    let thetas: Vec<Vec<f64>> = known.iter().map(|local| local.theta.clone()).collect();
-    ends.par_extend(thetas.par_iter().map(follow));
-    let mut found = collect(task, &ends);
+    let cheapest = |a: &Local, b: &Local| a.costs.of(criterion).total_cmp(&b.costs.of(criterion));
     if found.optima.is_empty() {
-        let cheapest = |a: &Local, b: &Local| a.costs.of(criterion).total_cmp(&b.costs.of(criterion));
-        found.attempt = ends.iter().map(|e| e.local.clone()).filter(Local::keeps_to_limits).min_by(cheapest);
-        // Where a descent got lost is a motion by its own account only.
-        let lost = || ends.iter().map(|e| e.local.clone()).filter(Local::is_motion).min_by(cheapest);
-        found.motion = known.into_iter().min_by(cheapest).or_else(lost);
+        // Descents may fail where there are motions: from these they have no limit to find their way to.
+        let known = motions(task, settings.seed, found.effort.starts, neighbours, watch);
+        let thetas: Vec<Vec<f64>> = known.iter().map(|local| local.theta.clone()).collect();
+        ends.par_extend(thetas.par_iter().map(follow));
+        found = collect(task, &ends);
+        // Where there are motions there is an optimum: other starts may lead to it.
+        while found.optima.is_empty() && !known.is_empty() && settings.starts.is_none() && next < most {
+            let batch = next..most.min(next + WIDEST);
+            next = batch.end;
+            ends.par_extend(batch.into_par_iter().map(|k| run(k, None)));
+            found = collect(task, &ends);
+        }
+        if found.optima.is_empty() {
+            // Where a descent got lost is a motion by its own account only.
+            let lost = || ends.iter().map(|e| e.local.clone()).filter(Local::is_motion).min_by(cheapest);
+            found.motion = known.into_iter().min_by(cheapest).or_else(lost);
+            return found;
+        }
     }
+    // Where descents got lost may be cheaper than where others arrived: then there is a better optimum, or none that smooth steps find.
+    let Some(best) = found.optima.first().map(|best| best.local.costs.of(criterion)) else { return found };
+    let cheaper = |local: &Local| local.costs.of(criterion) < (1.0 - CHEAPER) * best;
+    let mut lost: Vec<&Local> = ends.iter().map(|end| &end.local).filter(|local| !local.status.is_optimal()).collect();
+    lost.retain(|local| local.keeps_to_limits() && cheaper(local));
+    lost.sort_by(|a, b| cheapest(a, b));
+    lost.truncate(REPAIRED);
+    let repaired = lost.par_iter().map(|local| task.nearest_motion(&local.theta, &mut |_| watch(Event::Iterate)));
+    let repaired: Vec<Local> = repaired.filter(|local| local.is_motion() && cheaper(local)).collect();
+    ends.par_extend(repaired.par_iter().map(|local| follow(&local.theta)));
+    let mut found = collect(task, &ends);
+    let best = found.optima.first().map_or(best, |best| best.local.costs.of(criterion));
+    let still = |local: &Local| local.costs.of(criterion) < (1.0 - CHEAPER) * best;
+    found.motion = repaired.into_iter().filter(still).min_by(cheapest);
     found
 }
 
@@ -227,8 +253,9 @@ pub fn start(gait: &dyn Gait, criterion: Criterion, speed: f64, seed: u64, k: us
     // same few optima, so later starts take what comes, unless it is hopeless.
     let (draws, good) = if k < BATCH { (DRAWS, 0.0) } else { (MOST_DRAWS, HOPELESS) };
     let mut best = draw();
-    for _ in 1..draws {
-        if best.0 <= good {
+    for drawn in 1.. {
+        let enough = drawn >= draws && best.0.is_finite();
+        if best.0 <= good || enough || drawn == DRAWS_IN_VAIN {
             break;
         }
         let other = draw();
@@ -270,7 +297,7 @@ fn collect(task: &Task, ends: &[End]) -> Found {
     let starts = ends.iter().filter(|e| !e.informed).count();
     let successes = optima.iter().map(|o| o.reached).sum();
     let effort = Effort { starts, successes, informed: ends.len() - starts, optima: optima.len() };
-    Found { optima, failure: bad.first().map(|e| e.local.clone()), motion: None, attempt: None, effort }
+    Found { optima, failure: bad.first().map(|e| e.local.clone()), motion: None, effort }
 }
 
 /// How near two motions of one optimum are, in natural sizes of the variables.

@@ -80,6 +80,7 @@ pub fn dips(cycle: &Cycle) -> Result<Dips, Undefined> {
     for phase in 0..cycle.phases() {
         let mut glance = Glance::new(cycle.description(), phase);
         let Suspects { instants, constraints } = suspects(cycle, phase);
+        beside_turns(cycle, phase, &mut glance, &mut result)?;
         // At three successive instants.
         let mut values = [0, 1, 2].map(|_| vec![0.0; constraints.len()]);
         for (k, (s, node)) in instants.iter().enumerate() {
@@ -102,7 +103,7 @@ pub fn dips(cycle: &Cycle) -> Result<Dips, Undefined> {
                 result.violation = result.violation.max(-v[1]);
                 // A dip inside the first or last interval shows in the parabola only.
                 let dips = v[1] <= v[0] && v[1] < v[2] || k == 2 || k + 1 == instants.len();
-                if v[1] < NEAR && dips {
+                if v[1] < NEAR && dips && !cycle.is_torn(phase, constraint, instants[k - 1].0) {
                     let s = [k - 2, k - 1, k].map(|i| instants[i].0);
                     let (mut at, mut value) = vertex(&s, &v);
                     if at > s[0] && at < s[2] {
@@ -122,6 +123,24 @@ pub fn dips(cycle: &Cycle) -> Result<Dips, Undefined> {
     // Of two dips that turn out to be one, the lower has the last word.
     result.found.sort_by(|a, b| b.value.total_cmp(&a.value));
     Ok(result)
+}
+
+/// Where joints with dry friction turn around, on either side.
+fn beside_turns(cycle: &Cycle, phase: usize, glance: &mut Glance, result: &mut Dips) -> Result<(), Undefined> {
+    for (constraint, path) in cycle.path(phase).iter().enumerate() {
+        if !matches!(path.dry(), Some((_, Some(_)))) {
+            continue;
+        }
+        for s in cycle.lows_beside_turns(phase, constraint) {
+            cycle.glance(phase, s, glance)?;
+            let value = path.value(&glance.values);
+            result.violation = result.violation.max(-value);
+            if value < NEAR {
+                result.found.push(Dip { phase, constraint, s, value });
+            }
+        }
+    }
+    Ok(())
 }
 
 /// What of a phase is worth a look.

@@ -195,6 +195,9 @@ impl<'a> Slopes<'a> {
                     .row_nodes(i)
                     .into_iter()
                     .for_each(|(node, part)| rows[node].push((constraint, multiplier * part)));
+                for (node, quantity, part) in cycle.row_turn(i) {
+                    weights[node].push((quantity, -multiplier * part));
+                }
             }
         }
         let durations: Vec<f64> = self.motion.durations().collect();

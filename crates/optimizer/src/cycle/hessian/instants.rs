@@ -98,6 +98,16 @@ impl Cycle<'_> {
                 bend(node, constraint, -0.5 * multiplier * share);
             }
             square(h, local, multiplier / dip.lowest.curvature);
+            let Some(turn) = &dip.lowest.turn else { return };
+            let (mut a, mut b) = (p.no_parameters(), p.no_parameters());
+            let [by_value, by_rate] = &turn.bend;
+            for i in 0..NODES {
+                let node = dip.first() + i;
+                p.add_quantity(d, node, turn.rate, dip.lowest.shape[i], &mut a);
+                p.add_quantity(d, node, turn.rate, by_rate[i], &mut b);
+                p.add_constraint(d, node, constraint, by_value[i], &mut b);
+            }
+            product(h, &a, &b, -multiplier);
         });
     }
 }

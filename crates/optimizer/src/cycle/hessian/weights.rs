@@ -31,6 +31,9 @@ impl Cycle<'_> {
                     weights[node * count + quantity] -= multiplier * share * partial
                 });
             }
+            for (node, quantity, by) in dip.of_turn() {
+                weights[node * count + quantity] -= multiplier * by;
+            }
         });
         for (row, (_, joint, node)) in self.rows.holding().filter(|(_, (phase, ..))| *phase == k) {
             weights[node * count + p.instants.quantities.rate(joint)] -= lambda[row] / self.units.rate();
