@@ -20,11 +20,11 @@ use piaffe::model::Gait;
 use piaffe::motion::{Course, Criterion, Motion};
 use piaffe::result::Status;
 use piaffe::search::multi_start::Settings;
-use piaffe::sqp::Control;
+use piaffe::sqp::{Control, Problem, Values};
 use piaffe::units::Units;
 use piaffe::walk::{Moment, Walk};
 use piaffe::{Robot, Task};
-use piaffe_codegen::{Changes, Load};
+use piaffe_codegen::{Changes, Load, RobotFiles, SpecFile};
 use program::{optimum, optimum_at, piaffe};
 use python::{ask, python};
 use serde_json::{Value, json};
@@ -192,7 +192,6 @@ fn no_other_shares_leave_more_room() {
     }
 }
 
-/// A biped's feet are aside of its mass centre: in the plane it walks on them, in space it would fall over.
 /// The optimizer's formulas know one way to share the load; the cone program, from the whole robot's equations, all of them.
 #[test]
 fn an_amble_with_limits_at_real_legs_is_one_that_they_can_walk() {
@@ -219,6 +218,71 @@ fn an_amble_with_limits_at_real_legs_is_one_that_they_can_walk() {
         let ordered = [of_virtual, least, within, proportional].is_sorted_by(|a, b| *a <= b * (1.0 + 1e-5));
         assert!(ordered, "{costs:?}");
         assert!((with.cost.unwrap() / proportional - 1.0).abs() < 1e-9, "{:?} {proportional}", with.cost);
+    }
+}
+
+/// Three half steps of an amble, mirrored, are the amble: the leg that stands in the second phase is the other one, and its real legs' limits and
+/// costs are those of its mirror image.
+#[test]
+fn limits_at_real_legs_are_of_the_leg_that_stands() {
+    let mut files = RobotFiles::read(concat!(env!("CARGO_MANIFEST_DIR"), "/model-spec").as_ref()).unwrap();
+    let amble = files.gaits.iter().find(|file| file.path.ends_with("amble.toml")).unwrap();
+    let phases = [1, 2, 1].map(|leg| format!("[[phases]]\nstance = [\"leg{leg}\"]\nduration = [0.05, 2.0]\n")).concat();
+    let kept = |line: &&str| !line.starts_with("half_step");
+    let [mut text, limits] = [0, 1].map(|k| {
+        let parts: Vec<&str> = amble.text.split("[limits]").collect();
+        parts[k].lines().filter(kept).collect::<Vec<_>>().join("\n")
+    });
+    text += &format!("\n{phases}[cycle]\nthen = \"mirrored\"\n[limits]{limits}\n");
+    files.gaits.push(SpecFile { path: "gaits/long_amble.toml".into(), text });
+    let robot = Robot::new(RobotFiles { module: String::new(), ..files }).unwrap();
+    let [amble, long] = ["amble", "long_amble"].map(|name| robot.gait(name).unwrap());
+    let [amble, long] = [&amble, &long].map(|gait| Altered::at_real_legs(gait).unwrap());
+    let d = amble.description();
+    for criterion in Criterion::ALL {
+        let (_, motion) = optimum(&amble, criterion);
+        let own = &motion.phases[0];
+        let mirrored = |values: &[f64], beta: f64| -> (Vec<f64>, f64) {
+            let all = d.complete(values, beta);
+            let seen = |k: usize| {
+                let (from, sign) = d.swapped(k);
+                sign * all[from]
+            };
+            ((0..d.prescribed()).map(|k| seen(d.prescribed_index(k))).collect(), seen(d.unactuated))
+        };
+        let (q_initial, beta_initial) = mirrored(&own.q_initial, own.beta_initial);
+        let (qd_initial, betad_initial) = mirrored(&own.qd_initial, own.betad_initial);
+        let (q_final, beta_final) = mirrored(&own.q_final, own.beta_final);
+        let (qd_final, betad_final) = mirrored(&own.qd_final, own.betad_final);
+        let q_interior = own.q_interior.iter().map(|q| mirrored(q, 0.0).0).collect();
+        let other = Course {
+            duration: own.duration,
+            q_initial,
+            qd_initial,
+            q_interior,
+            q_final,
+            qd_final,
+            beta_initial,
+            betad_initial,
+            beta_final,
+            betad_final,
+        };
+        let three = Motion { phases: vec![own.clone(), other, own.clone()] };
+        let [short, long] = [(&amble, &motion), (&long, &three)].map(|(gait, motion)| {
+            let mut cycle = Cycle::new(gait, criterion, 0.6);
+            let mut values = Values::zeros(cycle.equalities(), cycle.inequalities());
+            cycle.evaluate(&theta(motion), &mut values).unwrap();
+            (values.objective, values.inequalities)
+        });
+        assert!((long.0 / short.0 - 1.0).abs() < 1e-9, "{criterion:?}: {} {}", long.0, short.0);
+        // Each limit is there three times.
+        let sorted = |mut values: Vec<f64>| {
+            values.sort_by(f64::total_cmp);
+            values
+        };
+        let thrice = sorted(short.1.iter().flat_map(|value| [*value; 3]).collect());
+        let far = sorted(long.1).iter().zip(&thrice).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(far < 1e-7, "{criterion:?}: {far}");
     }
 }
 

@@ -32,6 +32,7 @@ impl<T: Scalar> ImpactConstraints<T> {
     /// Of such a transition, with this coefficient of friction; none where nothing lands.
     pub fn with(description: &Description, transition: Transition, friction: T) -> Option<ImpactConstraints<T>> {
         let units = Units::new(description);
+        let landing = transition.lands().filter(|_| applies(description));
         let y = match transition {
             Transition::Touchdown(_) => description.shapes.touchdown_curvature.outputs,
             Transition::Landing(_) => {
@@ -46,7 +47,7 @@ impl<T: Scalar> ImpactConstraints<T> {
             unit: units.impulse(),
             speed: units.speed(),
             y,
-            feet: if applies(description) { offsets(description) } else { Vec::new() },
+            feet: landing.map_or(Vec::new(), |leg| offsets(&description.legs[leg])),
             pitching: pitches(description).then(|| units.angular_momentum()),
         })
     }

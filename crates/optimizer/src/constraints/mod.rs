@@ -73,8 +73,8 @@ pub fn path_constraints_of<T: Scalar>(
     list.extend(swing::constraints(description, limits, &y, &swings(description, k)));
     list.extend(ground::constraints(description, limits, &y));
     list.extend(range::constraints(description, limits, &y));
-    if mode.stance().is_some() {
-        list.extend(sharing::constraints(description, limits, &y));
+    if let Some(leg) = mode.stance() {
+        list.extend(sharing::constraints(description, limits, &y, leg));
     }
     list.extend(going::constraints(description, &y));
     list

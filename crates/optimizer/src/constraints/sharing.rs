@@ -64,9 +64,9 @@ pub fn obstacle(d: &Description) -> Option<String> {
     })
 }
 
-/// The feet of the pair in support from the virtual foot, along Xf, m.
-pub fn offsets(d: &Description) -> Vec<f64> {
-    let mounts: Vec<f64> = d.legs[0].members.iter().map(|m| m.mount()[0]).collect();
+/// The feet of a pair from the virtual foot, along Xf, m.
+pub fn offsets(leg: &Leg) -> Vec<f64> {
+    let mounts: Vec<f64> = leg.members.iter().map(|m| m.mount()[0]).collect();
     let mean = mounts.iter().sum::<f64>() / mounts.len().max(1) as f64;
     mounts.iter().map(|x| x - mean).collect()
 }
@@ -103,17 +103,23 @@ enum Of<T> {
     Actuator { bound: T, torque: T, rate: f64, passive: Option<Passive<T>> },
 }
 
-pub fn constraints<T: Scalar>(d: &Description, limits: &Limits<T>, y: &Quantities) -> Vec<PathConstraint<T>> {
+/// While virtual leg `stance` stands.
+pub fn constraints<T: Scalar>(
+    d: &Description,
+    limits: &Limits<T>,
+    y: &Quantities,
+    stance: usize,
+) -> Vec<PathConstraint<T>> {
     let mut list = Vec::new();
     if !applies(d) {
         return list;
     }
     let weight = d.total_mass() * d.gravity;
-    let leg = &d.legs[0];
+    let leg = &d.legs[stance];
     let share = 1.0 / leg.members.len() as f64;
-    for (member, offset) in leg.members.iter().zip(offsets(d)) {
+    for (member, offset) in leg.members.iter().zip(offsets(leg)) {
         let mut add = |limit: Limit, of: String, unit: f64, joint: usize, formula: Of<T>| {
-            let form = Form::Share(Share { quantities: quantities(d, y, joint), offset, weight, of: formula });
+            let form = Form::Share(Share { quantities: quantities(d, y, leg, joint), offset, weight, of: formula });
             list.push(PathConstraint::new(limit, unit, form).of(of));
         };
         let foot = || member.name.to_string();
@@ -138,19 +144,19 @@ pub fn constraints<T: Scalar>(d: &Description, limits: &Limits<T>, y: &Quantitie
     list
 }
 
-/// The torques of all joints of the legs in support, each with the virtual leg's joint that it is one of.
-pub fn torques(d: &Description, y: &Quantities) -> Vec<(usize, Share)> {
+/// The torques of all joints of the real legs that stand while virtual leg `stance` does, each with the joint of that which it is one of.
+pub fn torques(d: &Description, y: &Quantities, stance: usize) -> Vec<(usize, Share)> {
+    let leg = &d.legs[stance];
     let of_foot = |offset: f64| {
-        let leg = &d.legs[0];
         let weight = d.total_mass() * d.gravity;
-        let share = move |k: usize| Share { quantities: quantities(d, y, k), offset, weight, of: Of::Torque };
+        let share = move |k: usize| Share { quantities: quantities(d, y, leg, k), offset, weight, of: Of::Torque };
         (leg.first_joint..leg.end_joint).enumerate().map(move |(k, j)| (j, share(k)))
     };
-    offsets(d).into_iter().flat_map(of_foot).collect()
+    offsets(leg).into_iter().flat_map(of_foot).collect()
 }
 
 /// Where what decides of a joint of the leg in support stands among an instant's quantities.
-fn quantities(d: &Description, y: &Quantities, joint: usize) -> [usize; COUNT] {
+fn quantities(d: &Description, y: &Quantities, leg: &Leg, joint: usize) -> [usize; COUNT] {
     let shared = Shared::new(d);
     let at = |index: usize| y.shared().start + index;
     let mut quantities = [0; COUNT];
@@ -160,9 +166,8 @@ fn quantities(d: &Description, y: &Quantities, joint: usize) -> [usize; COUNT] {
     }
     quantities[MOMENT] = at(shared.moment(0));
     quantities[MOMENT + 1] = at(shared.moment(1));
-    quantities[TORQUE] = y.torque(d.legs[0].first_joint + joint);
-    quantities[RATE] = y.rate(d.legs[0].first_joint + joint);
-    quantities[ANGLE] = y.angle(d.legs[0].first_joint + joint);
+    let joint = leg.first_joint + joint;
+    (quantities[TORQUE], quantities[RATE], quantities[ANGLE]) = (y.torque(joint), y.rate(joint), y.angle(joint));
     quantities
 }
 

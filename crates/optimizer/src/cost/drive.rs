@@ -48,12 +48,12 @@ impl Drive {
             Drive { torque, angle: y.angle(joint), rate: y.rate(joint), passive, joint, sharing }
         };
         let of_virtual = |j: usize| of(j, Torque::Virtual(y.torque(j)), 1.0);
-        if mode == Mode::Flight || !applies(d) {
+        let Some(stance) = mode.stance().filter(|_| applies(d)) else {
             return (0..d.joints()).map(of_virtual).collect();
-        }
-        let leg = &d.legs[0];
+        };
+        let leg = &d.legs[stance];
         let sharing = leg.members.len() as f64;
-        let standing = torques(d, &y).into_iter();
+        let standing = torques(d, &y, stance).into_iter();
         let standing = standing.map(|(j, share)| of(j, Torque::Real(share), sharing));
         let swinging = (0..d.joints()).filter(|j| !(leg.first_joint..leg.end_joint).contains(j)).map(of_virtual);
         standing.chain(swinging).collect()

@@ -230,7 +230,8 @@ impl<'a> Cycle<'a> {
     /// The problem with twice as many elements, if these do not resolve the last simulated motion.
     pub fn finer(&self) -> Option<Cycle<'a>> {
         let resolution = RESOLUTION * (2.0 * self.froude()).min(1.0);
-        let coarse = |p: &Phase| p.mesh_error(self.gait, &self.units).is_ok_and(|error| error > resolution);
+        // What a finer mesh has no motion for is not resolved either.
+        let coarse = |p: &Phase| !p.mesh_error(self.gait, &self.units).is_ok_and(|error| error <= resolution);
         if self.phases.iter().any(coarse) { self.twice_as_fine() } else { None }
     }
 

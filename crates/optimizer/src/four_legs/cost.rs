@@ -103,7 +103,9 @@ pub fn costs(lift: &Lift, effort: fn(&Instant) -> &Effort) -> Costs {
             begun += smooth.len();
         }
     }
-    Costs { energy: work.energy / lift.travel, torque: work.torque / lift.travel }
+    // Backwards, too, metres cost.
+    let travel = lift.travel.abs();
+    Costs { energy: work.energy / travel, torque: work.torque / travel }
 }
 
 /// `c0 + c1 t + c2 t²`.

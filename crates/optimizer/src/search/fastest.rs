@@ -115,7 +115,9 @@ impl MaximumSpeed {
         settings: &Settings,
         journal: &dyn Journal,
     ) -> Vec<GaitResult> {
-        let known = results.iter().flatten().filter(|r| r.is_optimal()).map(|r| r.speed).fold(0.0, f64::max);
+        let optimal = results.iter().flatten().filter(|r| r.is_optimal());
+        let fastest = optimal.max_by(|a, b| a.speed.total_cmp(&b.speed));
+        let known = fastest.map_or(0.0, |r| r.speed);
         if self.speed <= known {
             return Vec::new();
         }
@@ -129,7 +131,8 @@ impl MaximumSpeed {
         }
         let (edge, unit) = (self.speed, Units::new(gait.description()).speed());
         self.ended_by = vec![BEYOND.into()];
-        let mut slower = (MaximumSpeed { speed: known, ..self.clone() }, Vec::new());
+        let theta = fastest.and_then(GaitResult::theta).unwrap_or_else(|| self.theta.clone());
+        let mut slower = (MaximumSpeed { speed: known, theta, ..self.clone() }, Vec::new());
         let mut faster = edge;
         let narrow = |good: f64| if good > known { NARROWED * (edge - known) } else { 0.0 };
         while faster - slower.0.speed > narrow(slower.0.speed).max(BISECTION * unit) {

@@ -79,7 +79,9 @@ fn joints_per_leg(d: &Description) -> usize {
 /// A duration of phase `k` in the robot's unit of time, within the limits; s.
 fn duration(d: &Description, k: usize, t: f64) -> f64 {
     let [lo, hi] = d.phases[k].duration;
-    (t * Units::new(d).time).min(0.8 * hi).max(1.2 * lo)
+    // Off both limits, or in the middle where these are close.
+    let (least, most) = (1.2 * lo, 0.8 * hi);
+    if least < most { (t * Units::new(d).time).min(most).max(least) } else { 0.5 * (lo + hi) }
 }
 
 /// Where the feet and the platform are over the gait's phases, in the world.
