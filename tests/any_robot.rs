@@ -237,3 +237,18 @@ fn a_byte_order_mark_is_passed_over() {
     let told = text(&piaffe_in(folder.path(), "check dog").stderr);
     assert!(told.contains("robot.toml:1:1") && !told.contains(['\u{feff}', '\u{fffd}']), "{told}");
 }
+
+/// A change that makes one gait impossible stands in nobody's way who asks for another, and is told to who asks for that one.
+#[test]
+fn a_gait_that_is_not_asked_about_forbids_nothing() {
+    let emu = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/friction/emu");
+    let robot = piaffe::Robot::read(emu).unwrap().with("phases.2.duration.longest", 0.05).unwrap();
+    assert_eq!(robot.gaits(), ["run", "skip"]);
+    let run = robot.gait("run").unwrap();
+    assert_eq!(piaffe::model::Gait::description(&run).phases[1].duration, [0.02, 0.05]);
+    let why = robot.gait("skip").unwrap_err().to_string();
+    assert!(why.contains("with what is asked for") && why.contains("`phases.2.duration` does not rise"), "{why}");
+    // What makes no robot, or none of its gaits, is told at once.
+    assert!(robot.with("links.femur.mass", -1.0).is_err());
+    assert!(piaffe::Robot::read(emu).unwrap().with("phases.1.duration.longest", 0.01).is_err());
+}

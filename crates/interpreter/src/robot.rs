@@ -13,6 +13,8 @@ use std::path::Path;
 pub struct Robot {
     files: RobotFiles,
     specified: Specified,
+    /// Gaits that a change has made impossible, and why.
+    lost: Vec<(String, String)>,
 }
 
 /// Why there is no such robot, or no such gait of it.
@@ -26,6 +28,9 @@ pub enum Unloadable {
     #[error("the {gait} cannot be derived with these numbers: {why}")]
     Gait { gait: String, why: Unrunnable },
 }
+
+/// What is said before the mistakes of a changed specification.
+const NONE: &str = "with what is asked for, the robot is none";
 
 impl Robot {
     /// The robot of a folder.
@@ -44,7 +49,7 @@ impl Robot {
     pub fn new(files: RobotFiles) -> Result<Robot, Unloadable> {
         let mut robots = specified(std::slice::from_ref(&files)).map_err(Unloadable::Specification)?;
         let specified = robots.pop().ok_or_else(|| Unloadable::Specification("there is no robot".into()))?;
-        Ok(Robot { files, specified })
+        Ok(Robot { files, specified, lost: Vec::new() })
     }
 
     /// The robot with another number where this one stands in its files: `links.thigh.mass`, `limits.friction`.
@@ -75,12 +80,25 @@ impl Robot {
         Robot::of_changed(files, wrong)
     }
 
-    /// The robot of files that were changed, unless that went wrong.
+    /// The robot of files that were changed, unless that went wrong. A gait that is none any more stands in nobody's way who asks for another.
     fn of_changed(files: RobotFiles, wrong: impl IntoIterator<Item = String>) -> Result<Robot, Unloadable> {
-        let robot = Robot::new(files);
-        let none = robot.as_ref().err().map(|why| format!("with what is asked for, the robot is none:\n{why}"));
+        let robot = Robot::new(files.clone()).or_else(|why| Robot::without_lost(&files).ok_or(why));
+        let none = robot.as_ref().err().map(|why| format!("{NONE}:\n{why}"));
         let wrong: Vec<String> = wrong.into_iter().chain(none).collect();
         if wrong.is_empty() { robot } else { Err(Unloadable::Specification(wrong.join("\n"))) }
+    }
+
+    /// The robot with those of the gaits that are some; `None` if none is.
+    fn without_lost(files: &RobotFiles) -> Option<Robot> {
+        let alone = |gait: &SpecFile| Robot::new(RobotFiles { gaits: vec![gait.clone()], ..files.clone() });
+        let (mut kept, mut lost) = (RobotFiles { gaits: Vec::new(), ..files.clone() }, Vec::new());
+        for file in &files.gaits {
+            match alone(file) {
+                Ok(_) => kept.gaits.push(file.clone()),
+                Err(why) => lost.push((Path::new(&file.path).file_stem()?.to_str()?.into(), why.to_string())),
+            }
+        }
+        Robot::new(kept).ok().filter(|robot| !robot.files.gaits.is_empty()).map(|robot| Robot { lost, ..robot })
     }
 
     /// The gait that a result carries with it, under its name there.
@@ -107,7 +125,8 @@ impl Robot {
 
     /// Names of its gaits, behind that of its module if it has one.
     pub fn gaits(&self) -> Vec<String> {
-        self.specified.gaits.iter().map(|gait| self.key(&gait.name)).collect()
+        let lost = self.lost.iter().map(|(name, _)| name);
+        self.specified.gaits.iter().map(|gait| &gait.name).chain(lost).map(|name| self.key(name)).collect()
     }
 
     /// Whether a gait leaves the ground, if there is one of this name.
@@ -119,7 +138,8 @@ impl Robot {
     /// fly, all.
     pub fn usual_gaits(&self) -> Vec<String> {
         let all = self.gaits();
-        let walks: Vec<String> = all.iter().filter(|gait| self.flies(gait) == Some(false)).cloned().collect();
+        // Of one that a change has made impossible that is told where it is asked for.
+        let walks: Vec<String> = all.iter().filter(|gait| self.flies(gait) != Some(true)).cloned().collect();
         if walks.is_empty() { all } else { walks }
     }
 
@@ -188,6 +208,9 @@ impl Robot {
     }
 
     fn unknown(&self, gait: &str) -> Unloadable {
+        if let Some((_, why)) = self.lost.iter().find(|(name, _)| self.key(name) == gait) {
+            return Unloadable::Specification(format!("{NONE}:\n{why}"));
+        }
         Unloadable::NoGait { gait: gait.into(), known: self.gaits().join(", ") }
     }
 }
