@@ -246,7 +246,7 @@ fn a_gait_that_is_not_asked_about_forbids_nothing() {
     assert_eq!(robot.gaits(), ["run", "skip"]);
     let run = robot.gait("run").unwrap();
     assert_eq!(piaffe::model::Gait::description(&run).phases[1].duration, [0.02, 0.05]);
-    let why = robot.gait("skip").unwrap_err().to_string();
+    let why = robot.gait("skip").err().unwrap().to_string();
     assert!(why.contains("with what is asked for") && why.contains("`phases.2.duration` does not rise"), "{why}");
     // What makes no robot, or none of its gaits, is told at once.
     assert!(robot.with("links.femur.mass", -1.0).is_err());
