@@ -94,6 +94,7 @@ pub fn shortest_flights(description: &Description, r: &GaitResult) -> Vec<f64> {
     let shortest =
         flights.map(|(phase, t)| (phase.duration[0], *t)).filter(|(least, t)| *t <= least * (1.0 + SHORTEST));
     let mut lengths: Vec<f64> = shortest.map(|(least, _)| least).collect();
+    lengths.sort_by(f64::total_cmp);
     lengths.dedup();
     lengths
 }

@@ -172,3 +172,10 @@ fn by_phase(walk: &Walk, value: impl Fn(&Moment) -> f64) -> Vec<Vec<Xy>> {
 pub fn spaced(name: &str) -> String {
     name.replace('_', " ")
 }
+
+/// A name of the specification at the beginning of a line.
+pub fn capital(name: &str) -> String {
+    let name = spaced(name);
+    let mut letters = name.chars();
+    letters.next().map_or(String::new(), |c| c.to_uppercase().chain(letters).collect())
+}
