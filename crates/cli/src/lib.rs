@@ -43,6 +43,7 @@ use piaffe_optimizer::examine::Examination;
 use piaffe_optimizer::optimize::Unaskable;
 use piaffe_optimizer::search::local::Task;
 use piaffe_optimizer::search::multi_start::Settings;
+use rayon::ThreadPoolBuilder;
 use robots::{Wanted, by_name};
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -486,6 +487,7 @@ pub fn run(build: Build) -> ExitCode {
 pub fn run_with(build: Build, typed: &[OsString]) -> u8 {
     let started = Instant::now();
     built::set(build);
+    choose_threads();
     Store::of_user().choose();
     let arguments = match read(typed) {
         Ok(arguments) => arguments,
@@ -510,6 +512,16 @@ pub fn run_with(build: Build, typed: &[OsString]) -> u8 {
             output::error(&error);
             FAILED
         }
+    }
+}
+
+/// As many threads as RAYON_NUM_THREADS asks for, but no more than there are cores: those would only wait for each other.
+fn choose_threads() {
+    let asked = std::env::var("RAYON_NUM_THREADS").ok().and_then(|count| count.trim().parse::<usize>().ok());
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    if asked.is_some_and(|count| count > cores) {
+        // Whoever has threads already keeps those.
+        let _ = ThreadPoolBuilder::new().num_threads(cores).build_global();
     }
 }
 

@@ -4,8 +4,8 @@ use super::built::{Published, published};
 use super::digits::decimal;
 use super::progress::{Counted, Progress};
 use super::{output, report, robots};
-use piaffe_model::{Description, Gait};
 use piaffe_model::motion::Criterion;
+use piaffe_model::{Description, Gait};
 use piaffe_optimizer::examine::Examination;
 use piaffe_optimizer::result::Receipt;
 use piaffe_optimizer::search::local::Task;
@@ -90,14 +90,15 @@ impl Table {
 
     /// Whether something was of one of its gaits.
     fn is_published(&self) -> bool {
-        self.gaits.iter().any(|gait| Criterion::ALL.into_iter().any(|c| self.published(gait.description(), c).is_some()))
+        self.gaits
+            .iter()
+            .any(|gait| Criterion::ALL.into_iter().any(|c| self.published(gait.description(), c).is_some()))
     }
 
     /// Searches, writes the results, and says each when it is found; how many starts there were.
     fn fill(&self, folder: &Path, records: &mut Vec<Record<'static>>) -> anyhow::Result<String> {
         let (names, steps) = self.widths();
-        let paper =
-            if self.is_published() { format!("  {:>10} {:<12}", "paper", "phases") } else { String::new() };
+        let paper = if self.is_published() { format!("  {:>10} {:<12}", "paper", "phases") } else { String::new() };
         output::say!(
             "{:<names$} {:<9} {:>10} {:<7} {:>6} {:<steps$} {:>9} {:>9} {:>9}{paper} active  between    real legs",
             "gait",

@@ -168,9 +168,10 @@ fn by_phase(walk: &Walk, value: impl Fn(&Moment) -> f64) -> Vec<Vec<Xy>> {
     (0..walk.phases.len()).map(of_phase).collect()
 }
 
-/// A name of the specification for a reader.
+/// A name of the specification for a reader. What is a number's, `links.fore_thigh.mass=1.6`, is left as it is written.
 pub fn spaced(name: &str) -> String {
-    name.replace('_', " ")
+    let word = |word: &str| if word.contains('=') { word.to_string() } else { word.replace('_', " ") };
+    name.split(' ').map(word).collect::<Vec<_>>().join(" ")
 }
 
 /// A name of the specification at the beginning of a line.

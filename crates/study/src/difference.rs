@@ -3,7 +3,7 @@
 
 use piaffe_codegen::spec::{default_of, numbers, words};
 use piaffe_model::motion::Criterion;
-use piaffe_model::{Gait, Specification};
+use piaffe_model::{Description, Gait, Specification};
 use piaffe_optimizer::origin::under_its_limits;
 use piaffe_optimizer::result::{GaitResult, SearchEntry, Status};
 use piaffe_optimizer::search::branch::{carried_to, same};
@@ -168,7 +168,7 @@ impl Difference {
         let same_gait = a.fingerprint == b.fingerprint;
         let kinship = match specifications {
             _ if same_gait => Kinship::Alike,
-            Some((a, b)) => Kinship::of(a, b, &words),
+            Some((a, b)) => Kinship::of([a, b], [of_a, of_b].map(|side| side.gait.description()), &words),
             None => Kinship::Unknown,
         };
         let comparable = !matches!(kinship, Kinship::OtherGait | Kinship::OtherRobot) && a.criterion == b.criterion;
@@ -208,24 +208,30 @@ impl Difference {
 
 impl Kinship {
     /// `reworded` is what differs in words.
-    fn of(a: &Specification, b: &Specification, reworded: &[Changed<String>]) -> Kinship {
-        let differ = |a: &str, b: &str| {
-            let in_these = |name: &str| [a, b].into_iter().any(|text| words(text).iter().any(|word| word.name == name));
-            // What a robot is called makes no difference.
-            let changed = reworded.iter().any(|word| word.name != "name" && in_these(&word.name));
-            changed || parts(a) != parts(b)
-        };
-        match (differ(&a.robot, &b.robot), differ(&a.gait, &b.gait)) {
-            (true, _) => Kinship::OtherRobot,
-            (false, true) => Kinship::OtherGait,
-            (false, false) => Kinship::Alike,
+    fn of([a, b]: [&Specification; 2], moves: [&Description; 2], reworded: &[Changed<String>]) -> Kinship {
+        let in_robots = |name: &str| [a, b].into_iter().any(|s| words(&s.robot).iter().any(|word| word.name == name));
+        // What a robot is called makes no difference.
+        let built = reworded.iter().any(|word| word.name != "name" && in_robots(&word.name));
+        if built || parts(&a.robot) != parts(&b.robot) {
+            return Kinship::OtherRobot;
         }
+        let [a, b] = moves;
+        let members = |d: &Description| {
+            d.legs.clone().map(|leg| leg.members.iter().map(|member| member.name).collect::<BTreeSet<_>>())
+        };
+        let modes = |d: &Description| d.phases.iter().map(|phase| phase.mode).collect::<Vec<_>>();
+        let joints = |d: &Description| d.joints.iter().map(|joint| joint.name).collect::<Vec<_>>();
+        let platform = |d: &Description| (d.rotation, d.unactuated, d.then);
+        let alike =
+            platform(a) == platform(b) && members(a) == members(b) && modes(a) == modes(b) && joints(a) == joints(b);
+        if alike { Kinship::Alike } else { Kinship::OtherGait }
     }
 }
 
-/// What a file has to say that need not be said: its links, joints, phases, …
+/// What a file has to say: its links, joints, legs, …
 fn parts(text: &str) -> BTreeSet<String> {
-    let names = numbers(text).into_iter().map(|number| number.name).chain(words(text).into_iter().map(|word| word.name));
+    let names =
+        numbers(text).into_iter().map(|number| number.name).chain(words(text).into_iter().map(|word| word.name));
     let part = |name: String| match name.split('.').collect::<Vec<_>>()[..] {
         [table, part, _, ..] => format!("{table}.{part}"),
         _ => name,
