@@ -355,7 +355,7 @@ fn slopes_of_one_robot_explain_no_other() {
     }
     for (other, kinship, words) in [
         ("walk", "other-robot", &["made of different parts", "mass 13.850 → 40.000 kg", "legs 0.300 → 0.800 m"][..]),
-        ("curvet", "other-gait", &["move the robot differently"]),
+        ("curvet", "other-gait", &["put together differently"]),
     ] {
         let told = succeeds(folder.path(), &format!("diff trot.json {other}.json"));
         assert!(words.iter().all(|word| told.contains(word)), "{told}");

@@ -2,7 +2,6 @@
 
 use crate::robot::Robot;
 use piaffe::gaits::GAITS;
-use piaffe::model::Gait as _;
 use piaffe_codegen::{RobotFiles, SpecFile};
 use pyo3::prelude::*;
 

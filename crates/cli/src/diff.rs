@@ -86,7 +86,7 @@ fn asked(out: &mut impl Write, d: &Difference) -> io::Result<()> {
     match d.kinship {
         Kinship::OtherRobot => return other_robots(out, d),
         Kinship::OtherGait => {
-            writeln!(out, "gaits           move the robot differently: no slope leads from one to the other")?;
+            writeln!(out, "gaits           put together differently: no slope leads from one to the other")?;
         }
         Kinship::Unknown => writeln!(out, "numbers         not known: not both say what robot they are of")?,
         Kinship::Alike if d.specified && d.numbers.is_empty() => {
