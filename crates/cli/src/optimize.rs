@@ -63,7 +63,11 @@ fn without_flights(gait: &dyn Gait, result: &GaitResult, asked: &Settings) -> Op
         Some((walk, related(of, &motion, d).filter(|_| !d.flies())?))
     });
     let (walk, motion) = grounded?;
-    let settings = Settings { starts: Some(STARTS_BESIDE), examination: asked.examination, ..Settings::default() };
     let task = Task { gait: walk, criterion: result.criterion, speed: result.speed };
-    Some(task.search(&settings, &[theta(&motion)], &|_| {}))
+    let search = |starts| {
+        let settings = Settings { starts, examination: asked.examination, ..Settings::default() };
+        task.search(&settings, &[theta(&motion)], &|_| {})
+    };
+    // Few starts do not settle that there is nothing.
+    Some(search(Some(STARTS_BESIDE))).filter(GaitResult::is_optimal).or_else(|| Some(search(None)))
 }

@@ -46,3 +46,23 @@ fn row(s: &Sensitivity, unit: &str) -> Markup {
             td.n { b { @if s.value == 0.0 { "–" } @else { (digits(s.elasticity, 4)) } } } td.n { (digits(s.slope, 4)) " " (unit) (per) } }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_that_is_zero_has_a_slope_and_no_elasticity() {
+        let of = |value: f64| Sensitivity {
+            parameter: "joints.knee.damping".into(),
+            numbers: vec!["joints.knee.damping".into()],
+            unit: "N·m·s".into(),
+            value,
+            slope: 2.0,
+            elasticity: 0.5 * value,
+        };
+        let shown = |value| row(&of(value), "N").into_string();
+        assert!(shown(0.0).contains("<b>–</b>") && shown(0.0).contains("2.000 N per"), "{}", shown(0.0));
+        assert!(shown(1.0).contains("<b>0.5000</b>"), "{}", shown(1.0));
+    }
+}
