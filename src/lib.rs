@@ -44,11 +44,18 @@ pub mod gaits {
 }
 
 #[cfg(feature = "cli")]
+mod paper;
+
+#[cfg(feature = "cli")]
 mod specification {
     include!(concat!(env!("OUT_DIR"), "/specification.rs"));
 }
 
-/// The gaits of this build and the files that they come from.
+/// The gaits of this build, the files that they come from, and what was published of them.
 #[cfg(feature = "cli")]
-pub const BUILT: cli::Build =
-    cli::Build { gaits: gaits::GAITS, folder: specification::FOLDER, files: specification::FILES };
+pub const BUILT: cli::Build = cli::Build {
+    gaits: gaits::GAITS,
+    folder: specification::FOLDER,
+    files: specification::FILES,
+    published: paper::PUBLISHED,
+};

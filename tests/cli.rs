@@ -3,6 +3,7 @@
 use serde_json::Value;
 use std::io::Write;
 use std::process::{Command, Output, Stdio};
+use std::time::Instant;
 
 fn piaffe(arguments: &[&str], input: &str) -> Output {
     let mut child = Command::new(env!("CARGO_BIN_EXE_piaffe"))
@@ -203,6 +204,7 @@ fn an_absurd_speed_is_said_in_a_few_characters() {
 
 #[test]
 fn an_infeasible_speed_is_said_and_fails() {
+    let started = Instant::now();
     let out = piaffe(&["optimize", "trot", "--speed", "5", "--starts", "2", "--json", "-"], "");
     assert_eq!(out.status.code(), Some(3));
     let result: Value = serde_json::from_slice(&out.stdout).unwrap();
@@ -210,6 +212,24 @@ fn an_infeasible_speed_is_said_and_fails() {
     assert!(result["cost"].is_null() && !result["conflicts"].as_array().unwrap().is_empty());
     let nearest = result["nearest_speed"].as_f64().unwrap();
     assert!((1.0..1.3).contains(&nearest), "{nearest}");
+    // The time is that of all that was done, the search for this speed included.
+    let (seconds, took) = (result["seconds"].as_f64().unwrap(), started.elapsed().as_secs_f64());
+    assert!((0.7 * took..took).contains(&seconds), "{seconds} s of {took} s");
+}
+
+/// Twenty thousand threads would wait for each other for minutes.
+#[test]
+fn more_threads_than_cores_are_not_started() {
+    let run = |threads: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_piaffe"));
+        command.args(["optimize", "trot", "--speed", "0.6", "--starts", "2", "--examine", "none", "--json", "-"]);
+        let out = command.env("RAYON_NUM_THREADS", threads).output().unwrap();
+        let result: Value = serde_json::from_slice(&out.stdout).unwrap();
+        result["cost"].as_f64().unwrap()
+    };
+    let started = Instant::now();
+    assert_eq!(run("20000"), run("1"));
+    assert!(started.elapsed().as_secs() < 30, "{:?}", started.elapsed());
 }
 
 #[test]

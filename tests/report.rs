@@ -198,6 +198,51 @@ fn every_figure_is_a_file_that_others_can_read() {
     }
 }
 
+/// In flight there is no force that friction could be a share of, and no foot to have a momentum about.
+#[test]
+fn a_gait_that_flies_is_drawn_with_numbers_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_string();
+    let asked = ["optimize", "running_trot", "--criterion", "torque", "--speed", "1", "--starts", "1", "--json"];
+    assert!(piaffe(&[&asked[..], &[&at("run.json")]].concat()).status.success());
+    assert!(piaffe(&["report", &at("run.json"), "--out", &at("page")]).status.success());
+    for entry in std::fs::read_dir(folder.path().join("page/figures")).unwrap() {
+        let file = entry.unwrap().path();
+        let drawn = text(&std::fs::read(&file).unwrap());
+        assert!(!drawn.contains("NaN") && !drawn.contains("inf "), "{}", file.display());
+    }
+    let html = std::fs::read_to_string(folder.path().join("page/index.html")).unwrap();
+    let data = html.split("data-of=\"running_trot-torque-1\">").nth(1).unwrap().split("</script>").next().unwrap();
+    let data: Value = serde_json::from_str(data).unwrap();
+    for (name, figure) in data["figures"].as_object().unwrap() {
+        for curve in figure["curves"].as_array().unwrap() {
+            let numbers = |axis: &str| curve[axis].as_array().unwrap().iter().all(Value::is_number);
+            assert!(numbers("x") && numbers("y"), "{name}: {}", curve["name"]);
+        }
+    }
+    assert!(html.contains("in flight, G") && !html.contains("recover from a push where it is farther"), "momentum");
+}
+
+/// A robot that weighs three times as much spends more, and less of its weight.
+#[test]
+fn robots_of_any_weight_compare_by_their_cost_of_transport() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_string();
+    for (gait, file) in [("trot", "trot.json"), ("rabbit/walk", "walk.json")] {
+        let asked = ["optimize", gait, "--speed", "0.6", "--starts", "1", "--json", &at(file)];
+        assert!(piaffe(&asked).status.success());
+    }
+    assert!(piaffe(&["report", &at("trot.json"), &at("walk.json"), "--out", &at("page")]).status.success());
+    let html = std::fs::read_to_string(folder.path().join("page/index.html")).unwrap();
+    let table = html.split("<table class=\"compare\">").nth(1).unwrap().split("</table>").next().unwrap();
+    let place = |name: &str| table.find(name).unwrap_or_else(|| panic!("no {name} in {table}"));
+    assert!(
+        place("Rabbit/walk, RABBIT") < place("</span> the best")
+            && place("</span> the best") < place("Trot, quadruped"),
+        "{table}"
+    );
+}
+
 #[test]
 fn what_cannot_be_shown_is_said() {
     let folder = tempfile::tempdir().unwrap();

@@ -208,6 +208,21 @@ fn gaits_that_fly_are_asked_for_by_name() {
     assert_eq!(gaits(&folder.path().join("all")), ["run", "walk"]);
 }
 
+/// A part has done what was asked when its rows are there, whatever they say: the script of docs/cluster.md goes on.
+#[test]
+fn a_part_ends_well_without_an_optimum_and_without_a_robot() {
+    let folder = tempdir().unwrap();
+    let asked =
+        format!("study trot --speed 4 --criterion torque --starts 1 --vary links.thigh.mass=1.6 --robot {SHIPPED}");
+    let told = succeeds(folder.path(), &format!("{asked} --shard 1/2 --out part1"));
+    assert!(told.contains("0 of 1 robots have an optimum"), "{told}");
+    let told = succeeds(folder.path(), &format!("{asked} --shard 2/2 --out part2"));
+    assert!(told.contains("part 2/2 has no robots: the study has 1") && !told.contains("0 of 0"), "{told}");
+    // The whole can tell.
+    assert_eq!(piaffe(folder.path(), "merge part1 part2 --out whole").output().unwrap().status.code(), Some(3));
+    assert_eq!(rows(&folder.path().join("whole")).len(), 1);
+}
+
 /// Slopes of energy beside slopes of torque say nothing.
 #[test]
 fn what_is_least_in_different_criteria_has_no_common_slopes() {
@@ -310,4 +325,96 @@ fn slopes_explain_the_difference_of_two_robots() {
     succeeds(folder.path(), "report light.json heavy.json --out page");
     let page = std::fs::read_to_string(folder.path().join("page/index.html")).unwrap();
     assert!(page.contains("Trot, links.thigh.mass=1.62") && page.contains("Trot, links.thigh.mass=1.6 "), "no names");
+}
+
+/// What one file leaves out is what it means, and no zero.
+#[test]
+fn a_number_that_is_not_given_is_the_one_that_is_meant() {
+    let folder = tempdir().unwrap();
+    reworded(folder.path(), "four", &[]);
+    reworded(folder.path(), "six", &[("virtual_legs", "polynomial_order = 6\nvirtual_legs")]);
+    for name in ["four", "six"] {
+        let asked = format!("optimize trot --speed 0.6 --starts 1 --robot {name} --json {name}.json --quiet");
+        succeeds(folder.path(), &asked);
+    }
+    let told = succeeds(folder.path(), "diff four.json six.json");
+    assert!(told.contains("polynomial_order: 4 (not given) → 6") && !told.contains("it is 0"), "{told}");
+    assert!(told.contains("incomplete: no slope is known in polynomial_order\n"), "{told}");
+    succeeds(folder.path(), "report four.json six.json --out page");
+    let page = std::fs::read_to_string(folder.path().join("page/index.html")).unwrap();
+    for order in [4, 6] {
+        assert!(page.contains(&format!("Trot, polynomial_order={order}")), "no name for order {order}");
+    }
+}
+
+#[test]
+fn slopes_of_one_robot_explain_no_other() {
+    let folder = tempdir().unwrap();
+    for (gait, file) in [("trot", "trot"), ("rabbit/walk", "walk"), ("curvet", "curvet")] {
+        succeeds(folder.path(), &format!("optimize {gait} --speed 0.6 --starts 1 --json {file}.json --quiet"));
+    }
+    for (other, kinship, words) in [
+        ("walk", "other-robot", &["made of different parts", "mass 13.850 → 40.000 kg", "legs 0.300 → 0.800 m"][..]),
+        ("curvet", "other-gait", &["put together differently"]),
+    ] {
+        let told = succeeds(folder.path(), &format!("diff trot.json {other}.json"));
+        assert!(words.iter().all(|word| told.contains(word)), "{told}");
+        for claim in ["explained by", "no slope is known", "slopes  "] {
+            assert!(!told.contains(claim), "{claim}: {told}");
+        }
+        assert!(told.lines().count() < 30, "{told}");
+        let json: Value =
+            serde_json::from_str(&succeeds(folder.path(), &format!("diff trot.json {other}.json --json -"))).unwrap();
+        assert_eq!(json["kinship"], kinship);
+        assert!(
+            json["prediction"].is_null() && json["carried"].is_null() && json["slopes"].as_array().unwrap().is_empty()
+        );
+    }
+}
+
+/// A sum without what matters most explains nothing, and does not say so in percent.
+#[test]
+fn an_explanation_says_what_it_leaves_out() {
+    let folder = tempdir().unwrap();
+    for (name, load) in [("bare", ""), ("loaded", " --payload 2@0.05,0.1,0")] {
+        succeeds(folder.path(), &format!("optimize trot --speed 0.6 --json {name}.json --robot {SHIPPED}{load}"));
+    }
+    let told = succeeds(folder.path(), "diff bare.json loaded.json");
+    let line = |start: &str| {
+        told.lines().find(|line| line.trim_start().starts_with(start)).unwrap_or_else(|| panic!("{told}"))
+    };
+    assert!(!line("in all").contains('%'), "{told}");
+    let left_out = "links.platform.com.x (it does not stand in A, where it is 0)";
+    assert!(line("incomplete: no slope is known in").contains(left_out), "{told}");
+}
+
+/// Two optima of different kinds: what the numbers are worth is told by the motion that is carried over.
+#[test]
+fn two_local_optima_are_told_from_one_that_moved() {
+    let folder = tempdir().unwrap();
+    let asked = format!("optimize curvet --criterion torque --speed 0.4 --examine quick --quiet --robot {SHIPPED}");
+    for (name, options) in [
+        ("a", "--starts 1"),
+        ("b", "--starts 6 --set links.thigh.mass=1.598"),
+        ("near", "--starts 1 --set links.thigh.mass=1.598"),
+        ("again", "--starts 1 --seed 5"),
+    ] {
+        succeeds(folder.path(), &format!("{asked} {options} --json {name}.json"));
+    }
+    let diff = |b: &str| succeeds(folder.path(), &format!("diff a.json {b}.json"));
+    let carried = |b: &str| -> Value {
+        serde_json::from_str::<Value>(&succeeds(folder.path(), &format!("diff a.json {b}.json --json -"))).unwrap()["carried"].take()
+    };
+    let cost = |name: &str| -> f64 {
+        let text = std::fs::read_to_string(folder.path().join(format!("{name}.json"))).unwrap();
+        serde_json::from_str::<Value>(&text).unwrap()["cost"].as_f64().unwrap()
+    };
+    assert!(!diff("near").contains("other optimum"), "{}", diff("near"));
+    let (told, arrived) = (diff("b"), carried("b"));
+    assert!(told.contains("other optimum   the motion of A, carried over to B, costs"), "{told}");
+    assert!(told.contains("A is not the best of its kind"), "{told}");
+    // It is the optimum that is found with the same numbers from the same start.
+    assert!((arrived["a"]["cost"].as_f64().unwrap() / cost("near") - 1.0).abs() < 1e-6, "{arrived}");
+    assert_eq!(arrived["a"]["is_found"], false);
+    assert!(diff("again").contains("B costs as much as A"), "{}", diff("again"));
 }

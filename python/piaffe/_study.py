@@ -7,12 +7,13 @@ import io
 import json
 import os
 import zlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Iterable, List, Optional, Tuple, Union
+from typing import TYPE_CHECKING, Any, List, Optional, Tuple, Union
 
 from . import _piaffe
+from ._given import MOST_STARTS, SEEDS, is_number, seconds, whole
 from ._piaffe import Error, Question, Robot
 from ._schedule import Answers, Chunks, Workers
 
@@ -68,12 +69,16 @@ def study(
 
     Raises `Error` where there is no such question, before anything is computed.
     """
+    if not isinstance(robot, Robot):
+        raise TypeError(f"`robot` is {robot!r}: give a piaffe.Robot, such as piaffe.robots[\"quadruped\"]")
+    starts, seed = whole("starts", starts, most=MOST_STARTS), whole("seed", seed, least=0, most=SEEDS)
+    chunk, in_flight, retries = seconds("chunk", chunk), whole("in_flight", in_flight), whole("retries", retries, least=0)
     gaits, criteria, extras = _gaits(robot, gait), _list(criterion), _list(also)
     names, rows = _designs(robot, designs, gaits)
     if executor is not None and not callable(executor) and not callable(getattr(executor, "submit", None)):
         expected = "give one with `submit(function, *arguments)`, a function that makes one, or none for all cores of this machine"
         raise TypeError(f"`executor` is {executor!r}: {expected}")
-    speeds = [speed] if isinstance(speed, (int, float)) else list(speed)
+    speeds = list(speed) if isinstance(speed, Iterable) and not isinstance(speed, str) else [speed]
     question = Question(robot, names, rows, gaits, criteria, speeds, real_legs, starts, seed, extras)
     return Study(question, executor, chunk, in_flight, retries, None if journal is None else Path(journal))
 
@@ -88,6 +93,19 @@ def _list(given: Union[str, Iterable[str]]) -> List[str]:
     return [given] if isinstance(given, str) else list(given)
 
 
+def _column(name: str, given: Any) -> List[Any]:
+    if isinstance(given, str) or not isinstance(given, Iterable):
+        raise TypeError(f"`{name}` is {given!r}: give a list of numbers, one for each design")
+    return list(given)
+
+
+def _design(k: int, given: Any) -> dict[str, Any]:
+    try:
+        return dict(given)
+    except (TypeError, ValueError):
+        raise TypeError(f"design {k} is {given!r}: give a mapping of numbers by their names") from None
+
+
 def _designs(robot: Robot, designs: Any, gaits: Sequence[str]) -> Tuple[List[str], List[List[float]]]:
     """Names and numbers of a table of any kind."""
     if designs is None:
@@ -97,19 +115,19 @@ def _designs(robot: Robot, designs: Any, gaits: Sequence[str]) -> Tuple[List[str
     elif hasattr(designs, "to_dict") and hasattr(designs, "columns"):
         table = list(designs.to_dict("records"))
     elif isinstance(designs, Mapping):
-        columns = {name: list(column) for name, column in designs.items()}
+        columns = {name: _column(name, column) for name, column in designs.items()}
         lengths = {name: len(column) for name, column in columns.items()}
         if len(set(lengths.values())) > 1:
             raise Error(f"the columns of the designs have different lengths: {lengths}")
         table = [dict(zip(columns, numbers)) for numbers in zip(*columns.values())]
     else:
-        table = [dict(design) for design in designs]
+        table = [_design(k, design) for k, design in enumerate(designs)]
     names = list(dict.fromkeys(name for design in table for name in design))
     faults = [
         f"design {k}: `{name}` is {value!r}: give a number"
         for k, design in enumerate(table)
         for name, value in design.items()
-        if not _is_number(value)
+        if not is_number(value)
     ]
     known = robot.numbers
     faults += robot.unknown(names)
@@ -128,13 +146,6 @@ def _designs(robot: Robot, designs: Any, gaits: Sequence[str]) -> Tuple[List[str
     if faults:
         raise Error("\n".join(faults[:20]) + (f"\nand {len(faults) - 20} more" if len(faults) > 20 else ""))
     return names, [[float(design[name] if name in design else known[name]) for name in names] for design in table]
-
-
-def _is_number(value: Any) -> bool:
-    try:
-        return not isinstance(value, (str, bool)) and abs(float(value)) < float("inf")
-    except (TypeError, ValueError):
-        return False
 
 
 def _answers(

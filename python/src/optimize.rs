@@ -30,14 +30,6 @@ pub fn speed(speed: f64) -> PyResult<f64> {
     }
 }
 
-/// Starts of a search.
-pub fn settings(starts: Option<usize>, seed: u64) -> PyResult<Settings> {
-    match starts {
-        Some(0) => Err(Error::new_err("`starts` is 0: give at least 1, or None for as many as the evidence asks for")),
-        starts => Ok(Settings { starts, seed, ..Settings::default() }),
-    }
-}
-
 /// How closely to look at an optimum.
 fn examination(name: &str) -> PyResult<Examination> {
     Examination::by_name(name).ok_or_else(|| {
@@ -62,7 +54,7 @@ pub fn optimize(
     threads: Option<usize>,
 ) -> PyResult<String> {
     let (criterion, speed) = (self::criterion(criterion)?, self::speed(speed)?);
-    let settings = Settings { examination: examination(examine)?, ..settings(starts, seed)? };
+    let settings = Settings { starts, seed, examination: examination(examine)? };
     let gait = gait.derived();
     let answer = work(py, threads, Stop::default(), move |stop| {
         let watch = |_| if stop.is_wanted() { Control::Stop } else { Control::Continue };

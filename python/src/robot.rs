@@ -28,11 +28,16 @@ fn named<'py, T: FromPyObjectOwned<'py>>(given: Option<&Bound<'py, PyAny>>) -> P
     }
 }
 
-/// A number for all joints that have none, or those of some.
+/// A number for all joints that have none, or those of some; by a gear of nothing no motor turns a joint.
 fn settings(option: &str, given: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<Setting>> {
-    let setting = |joint, value: f64| match value.is_finite() && value >= 0.0 {
-        true => Ok(Setting { joint, value }),
-        false => Err(Error::new_err(format!("`{option}` is {}: give a number that is not negative", digits(value)))),
+    let setting = |joint, value: f64| match option {
+        "gear" if !(value.is_finite() && value > 0.0) => {
+            Err(Error::new_err(format!("`{option}` is {}: give a positive number", digits(value))))
+        }
+        _ if !(value.is_finite() && value >= 0.0) => {
+            Err(Error::new_err(format!("`{option}` is {}: give a number that is not negative", digits(value))))
+        }
+        _ => Ok(Setting { joint, value }),
     };
     match given.map(|given| (given, given.cast::<PyMapping>())) {
         None => Ok(Vec::new()),

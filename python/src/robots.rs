@@ -1,35 +1,24 @@
-//! The robots that are shipped, by their files.
+//! The robots that are shipped: those of the build, by their files.
 
 use crate::robot::Robot;
+use piaffe::gaits::GAITS;
 use piaffe_codegen::{RobotFiles, SpecFile};
 use pyo3::prelude::*;
 
-/// A robot of `model-spec/` with its gaits.
-macro_rules! robot {
-    ($name:literal, $folder:literal, [$($gait:literal),*]) => {
-        ($name, include_str!(concat!("../../model-spec/", $folder, "robot.toml")), &[
-            $(($gait, include_str!(concat!("../../model-spec/", $folder, "gaits/", $gait, ".toml"))),)*
-        ])
-    };
-}
-
-/// A name, `robot.toml`, and its gaits.
-type Files = (&'static str, &'static str, &'static [(&'static str, &'static str)]);
-
-const ROBOTS: [Files; 3] = [
-    robot!("quadruped", "", ["amble", "bound", "bound_two_flights", "curvet", "running_trot", "trot"]),
-    robot!("rabbit", "rabbit/", ["run", "walk"]),
-    robot!("a1", "a1/", ["bound", "flying_bound", "running_trot"]),
-];
-
-/// All of them by name.
+/// All of them by name, in the build's order: that of their folder, or where they need none their own.
 #[pyfunction]
-pub fn built_in() -> PyResult<Vec<(&'static str, Robot)>> {
+pub fn built_in() -> PyResult<Vec<(String, Robot)>> {
     let file = |path: String, text: &str| SpecFile { path, text: text.into() };
-    let read = |(name, robot, gaits): Files| {
-        let gaits = gaits.iter().map(|(gait, text)| file(format!("{gait}.toml"), text)).collect();
-        let files = RobotFiles { module: String::new(), robot: file("robot.toml".into(), robot), gaits };
-        Ok((name, Robot::of(files, Vec::new())?))
-    };
-    ROBOTS.into_iter().map(read).collect()
+    let mut robots: Vec<(String, RobotFiles)> = Vec::new();
+    for gait in GAITS {
+        let (d, Some(specification)) = (gait.description(), gait.specification()) else { continue };
+        let (folder, name) = d.key.split_once('/').unwrap_or((d.robot, d.key));
+        if !robots.iter().any(|(known, _)| known == folder) {
+            let robot = file("robot.toml".into(), &specification.robot);
+            robots.push((folder.into(), RobotFiles { module: String::new(), robot, gaits: Vec::new() }));
+        }
+        let own = robots.iter_mut().find(|(known, _)| known == folder);
+        own.into_iter().for_each(|(_, files)| files.gaits.push(file(format!("{name}.toml"), &specification.gait)));
+    }
+    robots.into_iter().map(|(name, files)| Ok((name, Robot::of(files, Vec::new())?))).collect()
 }

@@ -3,13 +3,13 @@
 //! Every call has its own threads. A process that forks keeps none of its threads, and pools that outlive a call would be dead in
 //! the child.
 
-use crate::error::Error;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread::available_parallelism;
 use std::time::Duration;
 
 /// How often Python is asked whether somebody wants to stop.
@@ -39,14 +39,13 @@ impl Stop {
     }
 }
 
-/// Threads for one call; of all cores where no number is given.
+/// Threads for one call, one for each core at most: more would only wait for each other.
 fn pool(threads: Option<usize>) -> PyResult<ThreadPool> {
-    if threads == Some(0) {
-        return Err(Error::new_err("`threads` is 0: give at least 1, or None for all cores"));
-    }
+    let cores = available_parallelism().map_or(1, usize::from);
+    let threads = threads.map_or(cores, |threads| threads.clamp(1, cores));
     // A panic drops the channel, which is told below; the default is to end the process.
-    let pool = ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).panic_handler(|_| {}).build();
-    pool.map_err(|why| PyRuntimeError::new_err(format!("cannot start {threads:?} threads: {why}")))
+    let pool = ThreadPoolBuilder::new().num_threads(threads).panic_handler(|_| {}).build();
+    pool.map_err(|why| PyRuntimeError::new_err(format!("cannot start {threads} threads: {why}")))
 }
 
 /// Does what is soon done, likewise apart from Python's lock and the threads of others.

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 from collections.abc import Iterator
+from multiprocessing import get_all_start_methods
 from pathlib import Path
 from typing import Any
 
@@ -40,13 +43,15 @@ def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
-@pytest.mark.usefixtures("elsewhere")
-def test_processes(quadruped: piaffe.Robot, tmp_path: Path) -> None:
+@pytest.mark.parametrize("method", get_all_start_methods())
+def test_processes(method: str, tmp_path: Path) -> None:
+    """As a file of its own, however this system or another starts processes."""
     pyarrow = pytest.importorskip("pyarrow.parquet")
     text, found = re.subn(r"range\(\d+\)", "range(3)", program("# Clusters").replace('["energy", "torque"]', '["energy"]'))
     assert found == 1
-    rows = run(text, quadruped)
-    assert rows.count("optimal") == 3
+    start = f"import multiprocessing\nmultiprocessing.set_start_method({method!r}, force=True)\n"
+    (tmp_path / "study.py").write_text(start + text, encoding="utf-8")
+    subprocess.run([sys.executable, "study.py"], cwd=tmp_path, check=True, timeout=300)
     assert pyarrow.read_table(tmp_path / "study.parquet").num_rows == 3 and (tmp_path / "study.journal").exists()
 
 

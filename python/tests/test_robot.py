@@ -119,6 +119,8 @@ def test_options_of_an_import_are_the_robots(tmp_path: Path) -> None:
     assert "41" in text and "43" in text and "1e-5" in text.replace("0.00001", "1e-5")
     with pytest.raises(piaffe.Error, match="`effort` is -1"):
         piaffe.Robot.from_urdf(file, effort=-1.0)
+    with pytest.raises(piaffe.Error, match="`gear` is 0: give a positive number"):
+        piaffe.Robot.from_urdf(file, gear=0.0)
     with pytest.raises(piaffe.Error, match="`forward` is \"w\""):
         piaffe.Robot.from_urdf(file, forward="w")
     with pytest.raises(piaffe.Error, match="`range` of left_hip"):

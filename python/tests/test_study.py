@@ -276,6 +276,29 @@ def test_what_cannot_be_asked_is_told_before_anything_is_computed(quadruped: pia
     for none in (3, "threads", [1]):
         with pytest.raises(TypeError, match="`executor` is .*: give one with `submit"):
             ask(quadruped, executor=none)
+    refused: list[tuple[dict[str, Any], str]] = [
+        ({"in_flight": 0}, "`in_flight` is 0: give at least 1"),
+        ({"in_flight": -1}, "`in_flight` is -1: give at least 1"),
+        ({"retries": -1}, "`retries` is -1: give at least 0"),
+        ({"starts": 0}, "`starts` is 0: give at least 1"),
+        ({"seed": -1}, "`seed` is -1"),
+        ({"chunk": (10.0, 1.0)}, "`chunk` is .*: give the shortest first"),
+    ]
+    for options, said in refused:
+        with pytest.raises(piaffe.Error, match=said):
+            ask(quadruped, **options)
+    of_another_kind: list[tuple[dict[str, Any], str]] = [
+        ({"retries": "x"}, "`retries` is 'x': give a whole number"),
+        ({"chunk": 5}, "`chunk` is 5: give the shortest and the longest"),
+        ({"designs": [5]}, "design 0 is 5: give a mapping"),
+        ({"designs": {"gravity": 9.81}}, "`gravity` is 9.81: give a list"),
+    ]
+    for options, said in of_another_kind:
+        with pytest.raises(TypeError, match=said):
+            ask(quadruped, **options)
+    for robot in ("quadruped", [quadruped]):
+        with pytest.raises(TypeError, match="`robot` is .*: give a piaffe.Robot"):
+            ask(robot)  # type: ignore[arg-type]
     with pytest.raises(piaffe.Error, match=r"design 1: `links.\{thigh,shin\}.mass` is no single number"):
         ask(quadruped, [{"links.{thigh,shin}.mass": 1.0}, {"limits.friction": 0.7}])
     with pytest.raises(piaffe.Error, match="different lengths"):

@@ -4,7 +4,8 @@ use super::harmless::line;
 use super::{input, whole};
 use piaffe_codegen::RobotFiles;
 use piaffe_codegen::spec::unusable_as_folder;
-use piaffe_model::Gait;
+use piaffe_model::motion::Criterion;
+use piaffe_model::{Description, Gait};
 use sha2::{Digest, Sha256};
 use std::path::{MAIN_SEPARATOR, Path};
 use std::sync::OnceLock;
@@ -18,6 +19,28 @@ pub struct Build {
     pub folder: &'static str,
     /// Its files when this was built, with their SHA-256.
     pub files: &'static [(&'static str, &'static str)],
+    /// What others have published of these gaits.
+    pub published: &'static [Published],
+}
+
+/// An optimum that was published.
+#[derive(Clone, Copy, Debug)]
+pub struct Published {
+    /// [`Description::fingerprint`] of the gait: of another robot's gait of the same name it says nothing.
+    pub fingerprint: &'static str,
+    pub criterion: Criterion,
+    /// m/s.
+    pub speed: f64,
+    /// In the criterion's unit.
+    pub cost: f64,
+    /// Of its phases, s, as they were published.
+    pub durations: &'static str,
+}
+
+impl Published {
+    pub fn is_of(&self, gait: &Description) -> bool {
+        gait.fingerprint() == self.fingerprint
+    }
 }
 
 /// Of this program; set once, when it starts.
@@ -29,12 +52,17 @@ pub fn set(build: Build) {
 }
 
 fn build() -> Build {
-    BUILD.get().copied().unwrap_or(Build { gaits: &[], folder: "", files: &[] })
+    BUILD.get().copied().unwrap_or(Build { gaits: &[], folder: "", files: &[], published: &[] })
 }
 
 /// The gaits of this program.
 pub fn gaits() -> &'static [&'static dyn Gait] {
     build().gaits
+}
+
+/// What others have published of them.
+pub fn published() -> &'static [Published] {
+    build().published
 }
 
 /// The module that a build would make of a folder: one of its name, none of that of the specification itself. A name that no module

@@ -4,7 +4,7 @@ use super::digits::decimal;
 use super::{document, input, output};
 use piaffe_model::digits::digits;
 use piaffe_optimizer::result::{GaitResult, SearchEntry};
-use piaffe_study::difference::{Changed, Difference, Pair, Prediction};
+use piaffe_study::difference::{Carried, Changed, Difference, Kinship, Measures, Pair, Prediction, Side};
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -12,8 +12,9 @@ use std::path::Path;
 const SLOPES: usize = 5;
 
 pub fn run(a: &Path, b: &Path, json: Option<&str>) -> anyhow::Result<bool> {
-    let results = Pair { a: document::confirmed(a)?, b: document::confirmed(b)? };
-    let difference = Difference::new(&results.a, &results.b);
+    let ((of_a, gait_a), (of_b, gait_b)) = (document::confirmed(a)?, document::confirmed(b)?);
+    let difference = Difference::new(Side { result: &of_a, gait: gait_a }, Side { result: &of_b, gait: gait_b });
+    let results = Pair { a: of_a, b: of_b };
     if let Some(target) = json {
         output::json_to(target, &difference)?;
     }
@@ -40,10 +41,10 @@ fn tell(names: &Pair<String>, results: &Pair<GaitResult>, d: &Difference) -> io:
             None => writeln!(out, "no optimum ({})", r.message)?,
         }
     }
-    if let (Pair { a: Some(a), b: Some(b) }, true) = (d.cost, d.criterion.a == d.criterion.b) {
-        let percent = 100.0 * (b / a - 1.0);
+    if let Some(ratio) = d.ratio() {
+        let percent = 100.0 * (ratio - 1.0);
         match percent {
-            _ if a == b => writeln!(out, "   B costs as much as A")?,
+            0.0 => writeln!(out, "   B costs as much as A")?,
             _ if percent > 0.0 => writeln!(out, "   B costs {} % more than A", decimal(percent, 2))?,
             _ => writeln!(out, "   B costs {} % less than A", decimal(-percent, 2))?,
         }
@@ -51,6 +52,9 @@ fn tell(names: &Pair<String>, results: &Pair<GaitResult>, d: &Difference) -> io:
     asked(&mut out, d)?;
     if let Some(prediction) = &d.prediction {
         predicted(&mut out, prediction, &d.numbers, results.a.criterion.unit())?;
+    }
+    if let (Some(carried), Pair { a: Some(a), b: Some(b) }) = (&d.carried, d.cost) {
+        arrived(&mut out, carried, Pair { a, b }, results.a.criterion.unit())?;
     }
     let durations = |list: &[f64]| match list {
         [] => "none".into(),
@@ -79,10 +83,16 @@ fn tell(names: &Pair<String>, results: &Pair<GaitResult>, d: &Difference) -> io:
 
 /// What differs between the questions.
 fn asked(out: &mut impl Write, d: &Difference) -> io::Result<()> {
-    if !d.specified {
-        writeln!(out, "numbers         not known: not both say what robot they are of")?;
-    } else if d.numbers.is_empty() {
-        writeln!(out, "numbers         the same in both specifications")?;
+    match d.kinship {
+        Kinship::OtherRobot => return other_robots(out, d),
+        Kinship::OtherGait => {
+            writeln!(out, "gaits           put together differently: no slope leads from one to the other")?;
+        }
+        Kinship::Unknown => writeln!(out, "numbers         not known: not both say what robot they are of")?,
+        Kinship::Alike if d.specified && d.numbers.is_empty() => {
+            writeln!(out, "numbers         the same in both specifications")?;
+        }
+        Kinship::Alike => {}
     }
     entries(out, "numbers", &d.numbers, |value| digits(*value))?;
     entries(out, "words", &d.words, Clone::clone)?;
@@ -97,7 +107,25 @@ fn asked(out: &mut impl Write, d: &Difference) -> io::Result<()> {
         }
         _ => {}
     }
-    if at_real_legs {
+    otherwise_asked(out, d)
+}
+
+/// Of robots of other parts hardly a number is common: what they are like says more.
+fn other_robots(out: &mut impl Write, d: &Difference) -> io::Result<()> {
+    writeln!(out, "robots          made of different parts: no slope leads from one to the other")?;
+    let of = |name: &str, unit: &str, of: fn(&Measures) -> f64| {
+        format!("{name} {} → {} {unit}", decimal(of(&d.measures.a), 3), decimal(of(&d.measures.b), 3))
+    };
+    let measures = [of("mass", "kg", |m| m.mass), of("weight", "N", |m| m.weight), of("legs", "m", |m| m.leg_length)];
+    writeln!(out, "{:15} {}", "", measures.join(", "))?;
+    let (numbers, words) = (d.numbers.len(), d.words.len());
+    writeln!(out, "{:15} {numbers} numbers and {words} words are not the same in both: --json has them", "")?;
+    otherwise_asked(out, d)
+}
+
+/// What differs beside the specifications.
+fn otherwise_asked(out: &mut impl Write, d: &Difference) -> io::Result<()> {
+    if d.limits_at_real_legs.a != d.limits_at_real_legs.b {
         let hold = |real_legs| if real_legs { "at each real leg" } else { "at the virtual legs only" };
         let Pair { a, b } = d.limits_at_real_legs;
         writeln!(out, "limits hold     {} → {}", hold(a), hold(b))?;
@@ -117,9 +145,14 @@ fn asked(out: &mut impl Write, d: &Difference) -> io::Result<()> {
 /// Entries of the specifications that differ.
 fn entries<T>(out: &mut impl Write, head: &str, list: &[Changed<T>], shown: impl Fn(&T) -> String) -> io::Result<()> {
     for (k, entry) in list.iter().enumerate() {
-        let value = |value: &Option<T>| value.as_ref().map_or("not given".into(), &shown);
+        let value = |value: &Option<T>, given: bool| match value {
+            None => "not given".into(),
+            Some(value) if given => shown(value),
+            Some(value) => format!("{} (not given)", shown(value)),
+        };
         let head = if k == 0 { head } else { "" };
-        writeln!(out, "{head:15} {}: {} → {}", entry.name, value(&entry.values.a), value(&entry.values.b))?;
+        let Changed { name, values, given } = entry;
+        writeln!(out, "{head:15} {name}: {} → {}", value(&values.a, given.a), value(&values.b, given.b))?;
     }
     Ok(())
 }
@@ -137,29 +170,63 @@ fn predicted(out: &mut impl Write, p: &Prediction, numbers: &[Changed<f64>], uni
         writeln!(out, "{head:15} {name} by {change}{of}: {} {unit}", signed(part.at_a))?;
     }
     if !p.parts.is_empty() {
-        let share =
-            if p.difference == 0.0 { String::new() } else { format!(" ({:.0} %)", 100.0 * p.at_a / p.difference) };
+        // What is not counted may be all of it.
+        let share = match p.difference {
+            0.0 => String::new(),
+            _ if !p.without_slope.is_empty() => String::new(),
+            difference => format!(" ({:.0} %)", 100.0 * p.at_a / difference),
+        };
         let (sum, mean, all) = (signed(p.at_a), signed(p.mean), signed(p.difference));
         writeln!(out, "{:15} {sum} of {all} {unit}{share} to first order; {mean} with the slopes of both", "in all")?;
     }
     if !p.without_slope.is_empty() {
-        writeln!(out, "{:15} no slope is known in {}", "", without_slope(p, numbers).join(", "))?;
+        let names = without_slope(p, numbers).join(", ");
+        let head = if p.parts.is_empty() { "not explained" } else { "" };
+        writeln!(out, "{head:15} incomplete: no slope is known in {names}")?;
     }
     Ok(())
 }
 
-/// Numbers that differ and have no slope; friction that is none has none.
+/// Numbers that differ and have no slope. Slopes are in the numbers that stand in a file, and friction that is none has none.
 fn without_slope(p: &Prediction, numbers: &[Changed<f64>]) -> Vec<String> {
     let with_reason = |name: &String| {
-        let values = numbers.iter().find(|number| number.name == *name).map(|number| number.values);
-        let nothing = |value: Option<f64>| value.unwrap_or(0.0) == 0.0;
-        match values {
-            Some(Pair { a, .. }) if nothing(a) => format!("{name} (it is 0 in A)"),
-            Some(Pair { b, .. }) if nothing(b) => format!("{name} (it is 0 in B)"),
-            _ => name.clone(),
+        let number = numbers.iter().find(|number| number.name == *name);
+        let sides = number.into_iter().flat_map(|n| [("A", n.values.a, n.given.a), ("B", n.values.b, n.given.b)]);
+        match sides.into_iter().find(|(_, value, _)| *value == Some(0.0)) {
+            Some((letter, _, false)) => format!("{name} (it does not stand in {letter}, where it is 0)"),
+            Some((letter, _, true)) => format!("{name} (it is 0 in {letter})"),
+            None => name.clone(),
         }
     };
     p.without_slope.iter().map(with_reason).collect()
+}
+
+/// Whether the two are one optimum that moves with the numbers; if not, what these are worth.
+fn arrived(out: &mut impl Write, carried: &Pair<Carried>, cost: Pair<f64>, unit: &str) -> io::Result<()> {
+    if carried.a.is_found && carried.b.is_found {
+        return Ok(());
+    }
+    let sides = [("A", "B", carried.a, cost.a, cost.b), ("B", "A", carried.b, cost.b, cost.a)];
+    let mut head = "other optimum";
+    for (from, to, arrival, own, there) in sides.into_iter().filter(|side| !side.2.is_found) {
+        write!(out, "{head:15} the motion of {from}, carried over to {to}, ")?;
+        match arrival.cost {
+            None => writeln!(out, "ends in no optimum there: slopes do not lead from {from} to {to}")?,
+            Some(found) => {
+                let percent = 100.0 * (found / own - 1.0);
+                let (found_text, there_text) = (decimal(found, 4), decimal(there, 4));
+                write!(out, "costs {found_text} {unit} there, where {to}'s own costs {there_text}: ")?;
+                if found < there {
+                    writeln!(out, "{to} is not the best of its kind")?;
+                } else {
+                    let worth = format!("{}{} %", if percent < 0.0 { "-" } else { "+" }, decimal(percent.abs(), 2));
+                    writeln!(out, "what differs makes {worth}, the rest is that the two are different local optima")?;
+                }
+            }
+        }
+        head = "";
+    }
+    Ok(())
 }
 
 fn signed(number: f64) -> String {

@@ -2,6 +2,7 @@
 
 use super::{input, robots, study};
 use anyhow::{Context, anyhow, bail};
+use piaffe_model::Gait;
 use piaffe_optimizer::readback::Readback;
 use piaffe_optimizer::result::GaitResult;
 use piaffe_report::overview::Overview;
@@ -92,11 +93,11 @@ pub fn readback(file: &Path) -> anyhow::Result<Readback<'static>> {
 }
 
 /// The one result in a file, with its specification: of an optimum what was derived anew, of what is none what it states, if
-/// nothing refutes that.
+/// nothing refutes that; and its gait.
 ///
 /// # Errors
 /// If it cannot be read, is of no gait that can be had, or states what its motion does not do.
-pub fn confirmed(file: &Path) -> anyhow::Result<GaitResult> {
+pub fn confirmed(file: &Path) -> anyhow::Result<(GaitResult, &'static dyn Gait)> {
     let name = input::name(file);
     let stated = read_one(file)?.result;
     let gait = robots::of(&stated).map_err(|why| anyhow!("{name}: {why}"))?;
@@ -105,7 +106,7 @@ pub fn confirmed(file: &Path) -> anyhow::Result<GaitResult> {
         bail!("{name}: {why}");
     }
     let specification = confirmed.specification.or_else(|| gait.specification().cloned());
-    Ok(GaitResult { specification, ..confirmed })
+    Ok((GaitResult { specification, ..confirmed }, gait))
 }
 
 /// The files in a folder that may hold results: all JSON; of a study its walks.

@@ -10,6 +10,7 @@ use super::{input, whole};
 use anyhow::{Context, bail};
 use piaffe_model::motion::Criterion;
 use piaffe_model::{Gait, hash};
+use piaffe_optimizer::cycle::Variables;
 use piaffe_optimizer::result::{GaitResult, file_name};
 use piaffe_optimizer::search::journal::Journal;
 use piaffe_optimizer::search::multi_start::Settings;
@@ -258,6 +259,5 @@ impl Journal for Folder {
 
 /// How long a point of this gait takes, relative to others: the solver's work grows like the cube of the variables.
 pub fn effort(gait: &dyn Gait) -> u64 {
-    let d = gait.description();
-    (d.phases.len() * (2 * d.orientations() + d.prescribed() * (d.polynomial_order - 3) + 1)).pow(3) as u64
+    Variables::new(gait.description()).total().pow(3) as u64
 }

@@ -32,7 +32,7 @@ mod verify;
 mod whole;
 
 use asked::Asked;
-pub use built::Build;
+pub use built::{Build, Published};
 use clap::builder::{PossibleValuesParser, TypedValueParser, ValueParser};
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -40,12 +40,15 @@ use piaffe_codegen::Changes;
 use piaffe_interpreter::Store;
 use piaffe_model::motion::Criterion;
 use piaffe_optimizer::examine::Examination;
+use piaffe_optimizer::optimize::Unaskable;
 use piaffe_optimizer::search::local::Task;
 use piaffe_optimizer::search::multi_start::Settings;
+use rayon::ThreadPoolBuilder;
 use robots::{Wanted, by_name};
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::Instant;
 
 /// Exit code of a run that could not do what was asked.
 const FAILED: u8 = 1;
@@ -334,13 +337,29 @@ enum Subject {
     Else,
 }
 
+/// Of every command that there is.
+const SUBJECTS: [(&str, Subject); 15] = [
+    ("check", Subject::Else),
+    ("dynamics", Subject::Gaits),
+    ("model", Subject::Gaits),
+    ("import", Subject::Else),
+    ("optimize", Subject::Gaits),
+    ("export", Subject::Results),
+    ("lift", Subject::Results),
+    ("verify", Subject::Results),
+    ("report", Subject::Results),
+    ("sweep", Subject::Gaits),
+    ("diff", Subject::Results),
+    ("study", Subject::Gaits),
+    ("merge", Subject::Else),
+    ("completions", Subject::Else),
+    ("manual", Subject::Else),
+];
+
 impl Subject {
+    /// Of the command of this name; of the main job, which has none, the gaits.
     fn of(command: &str) -> Subject {
-        match command {
-            "export" | "lift" | "verify" | "report" | "diff" => Subject::Results,
-            "import" | "check" | "merge" | "completions" | "manual" => Subject::Else,
-            _ => Subject::Gaits,
-        }
+        SUBJECTS.iter().find(|(name, _)| *name == command).map_or(Subject::Gaits, |(_, subject)| *subject)
     }
 
     /// What is wrong with options that mean nothing here.
@@ -466,7 +485,9 @@ pub fn run(build: Build) -> ExitCode {
 /// The same with what was typed, the program's name first; tells the exit code. Once in a process: it is the robots of the first
 /// run that later ones find.
 pub fn run_with(build: Build, typed: &[OsString]) -> u8 {
+    let started = Instant::now();
     built::set(build);
+    choose_threads();
     Store::of_user().choose();
     let arguments = match read(typed) {
         Ok(arguments) => arguments,
@@ -478,7 +499,7 @@ pub fn run_with(build: Build, typed: &[OsString]) -> u8 {
     arguments.note_changes();
     let unsuccessful =
         if matches!(arguments.command, Some(Command::Verify { .. })) { NOT_CONFIRMED } else { NO_OPTIMUM };
-    let outcome = answer(arguments);
+    let outcome = answer(arguments, started);
     // A full disk is a failure, also where only words went there.
     let outcome = outcome.and_then(|good| match output::lost() {
         Some(error) => Err(anyhow::anyhow!("cannot write to standard output: {error}")),
@@ -494,6 +515,16 @@ pub fn run_with(build: Build, typed: &[OsString]) -> u8 {
     }
 }
 
+/// As many threads as RAYON_NUM_THREADS asks for, but no more than there are cores: those would only wait for each other.
+fn choose_threads() {
+    let asked = std::env::var("RAYON_NUM_THREADS").ok().and_then(|count| count.trim().parse::<usize>().ok());
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    if asked.is_some_and(|count| count > cores) {
+        // Whoever has threads already keeps those.
+        let _ = ThreadPoolBuilder::new().num_threads(cores).build_global();
+    }
+}
+
 /// Names of gaits: any, until it is known of which robots.
 fn gait_names() -> ValueParser {
     robots::keys().map_or_else(ValueParser::string, |keys| PossibleValuesParser::new(keys).into())
@@ -504,18 +535,17 @@ fn gait_names_or_all() -> ValueParser {
     robots::keys().map_or_else(ValueParser::string, names)
 }
 
-/// Does what was asked for.
-fn answer(arguments: Arguments) -> anyhow::Result<bool> {
-    let of_paper = arguments.robot.is_none() && arguments.asked.changes().is_empty();
+/// Does what was asked for, by a program that was started then.
+fn answer(arguments: Arguments, started: Instant) -> anyhow::Result<bool> {
     match arguments.command {
-        None => main_job::run(&arguments.out, of_paper, arguments.closely.examine),
+        None => main_job::run(&arguments.out, arguments.closely.examine),
         Some(Command::Check { folder, svg }) => check::run(&folder, svg.as_deref()),
         Some(Command::Dynamics { gait, file }) => dynamics::run(by_name(&gait)?, &file),
         Some(Command::Model { gait, latex, json }) => model::run(by_name(&gait)?, latex, json.as_deref()),
         Some(Command::Import(arguments)) => import::run(arguments),
         Some(Command::Optimize { gait, criterion, speed, seed, real_legs, starts, closely, json }) => {
             let task = Task { gait: by_name(&gait)?, criterion: criterion_by_name(&criterion), speed };
-            optimize::run(task, real_legs, &settings(starts, seed, closely.examine), json.as_deref())
+            optimize::run(task, real_legs, &settings(starts, seed, closely.examine), json.as_deref(), started)
         }
         Some(Command::Completions { shell }) => manual::completions(shell),
         Some(Command::Manual { out }) => manual::pages(&out),
@@ -567,7 +597,7 @@ fn criterion_by_name(name: &str) -> Criterion {
 /// A speed, m/s.
 fn speed(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(v) if v.is_finite() && v > 0.0 => Ok(v),
+        Ok(v) if Unaskable::of(v).is_none() => Ok(v),
         Ok(_) => Err("is no positive number of m/s; write for example 0.6".into()),
         Err(_) => Err("is not a number; write for example 0.6".into()),
     }
@@ -578,5 +608,17 @@ fn rate(text: &str) -> Result<f64, String> {
         Ok(v) if (1.0..=1e6).contains(&v) => Ok(v),
         Ok(_) => Err("must be between 1 and 1000000 per second".into()),
         Err(_) => Err("is not a number; write for example 1000".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_command_has_its_subject() {
+        let commands = Arguments::command();
+        let names: Vec<&str> = commands.get_subcommands().map(clap::Command::get_name).collect();
+        assert_eq!(names, SUBJECTS.map(|(name, _)| name));
     }
 }

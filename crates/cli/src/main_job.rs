@@ -1,11 +1,11 @@
-//! The main job: every gait and criterion, those that walk at 0.6 m/s beside the values of the paper (§6.2, §6.3), those that fly at
-//! 1 m/s.
+//! The main job: every gait and criterion, those that walk at 0.6 m/s beside what was published of them, those that fly at 1 m/s.
 
+use super::built::{Published, published};
 use super::digits::decimal;
 use super::progress::{Counted, Progress};
 use super::{output, report, robots};
-use piaffe_model::Gait;
 use piaffe_model::motion::Criterion;
+use piaffe_model::{Description, Gait};
 use piaffe_optimizer::examine::Examination;
 use piaffe_optimizer::result::Receipt;
 use piaffe_optimizer::search::local::Task;
@@ -26,43 +26,24 @@ const STARTS_FLYING: usize = 8;
 /// Heading of the phases' durations.
 const DURATIONS: &str = "phases, s";
 
-/// Cost and phase durations that the paper reports.
-struct Published {
-    gait: &'static str,
-    criterion: Criterion,
-    cost: f64,
-    durations: &'static str,
-}
-
-const PUBLISHED: [Published; 6] = [
-    Published { gait: "trot", criterion: Criterion::Energy, cost: 29.98, durations: "0.31" },
-    Published { gait: "amble", criterion: Criterion::Energy, cost: 55.13, durations: "0.17" },
-    Published { gait: "curvet", criterion: Criterion::Energy, cost: 78.87, durations: "0.31/0.196" },
-    Published { gait: "trot", criterion: Criterion::Torque, cost: 112.17, durations: "0.35" },
-    Published { gait: "amble", criterion: Criterion::Torque, cost: 256.8, durations: "0.404" },
-    Published { gait: "curvet", criterion: Criterion::Torque, cost: 802.26, durations: "0.456/0.298" },
-];
-
 /// Gaits at a speed, one line for each and criterion.
 struct Table {
     gaits: Vec<&'static dyn Gait>,
     title: String,
     speed: f64,
     settings: Settings,
-    published: &'static [Published],
 }
 
-/// `of_paper` tells whether the robot is the one whose values were published.
-pub fn run(folder: &Path, of_paper: bool, examination: Examination) -> anyhow::Result<bool> {
+pub fn run(folder: &Path, examination: Examination) -> anyhow::Result<bool> {
     let started = Instant::now();
     std::fs::create_dir_all(folder).map_err(|e| anyhow::anyhow!("cannot create {}: {e}", folder.display()))?;
     let mut records: Vec<Record> = Vec::new();
     let mut between = "";
-    for table in tables(of_paper, examination)? {
+    for table in tables(examination)? {
         output::say!("{between}{} at {} m/s\n", table.title, table.speed);
         let starts = table.fill(folder, &mut records)?;
         output::say!("\nEvery optimum is local: the best of {starts} starts.");
-        if !table.published.is_empty() {
+        if table.is_published() {
             output::say!(
                 "The paper does not give all of the robot's parameters (see model-spec/robot.toml), so its values are a"
             );
@@ -81,33 +62,43 @@ pub fn run(folder: &Path, of_paper: bool, examination: Examination) -> anyhow::R
 }
 
 /// Those that have gaits.
-fn tables(of_paper: bool, examination: Examination) -> anyhow::Result<Vec<Table>> {
+fn tables(examination: Examination) -> anyhow::Result<Vec<Table>> {
     let (flying, mut walking): (Vec<_>, Vec<_>) = robots::first()?.into_iter().partition(|g| g.description().flies());
-    // In the order of the paper.
-    walking.sort_by_key(|g| PUBLISHED.iter().position(|p| p.gait == g.description().gait));
+    // In the order of the paper, what is in none behind.
+    walking.sort_by_key(|g| published().iter().position(|p| p.is_of(g.description())).unwrap_or(usize::MAX));
     let walks = Table {
         gaits: walking,
         title: "Optimal gaits".into(),
         speed: WALKING,
         settings: Settings { examination, ..Settings::default() },
-        published: if of_paper { &PUBLISHED } else { &[] },
     };
     let runs = Table {
         gaits: flying,
         title: "Gaits that fly,".into(),
         speed: FLYING,
         settings: Settings { starts: Some(STARTS_FLYING), examination, ..Settings::default() },
-        published: &[],
     };
     Ok([walks, runs].into_iter().filter(|table| !table.gaits.is_empty()).collect())
 }
 
 impl Table {
+    /// What was published of a gait, if that was at this speed.
+    fn published(&self, gait: &Description, criterion: Criterion) -> Option<&'static Published> {
+        let asked = |p: &&Published| p.criterion == criterion && p.speed == self.speed;
+        published().iter().filter(asked).find(|p| p.is_of(gait))
+    }
+
+    /// Whether something was of one of its gaits.
+    fn is_published(&self) -> bool {
+        self.gaits
+            .iter()
+            .any(|gait| Criterion::ALL.into_iter().any(|c| self.published(gait.description(), c).is_some()))
+    }
+
     /// Searches, writes the results, and says each when it is found; how many starts there were.
     fn fill(&self, folder: &Path, records: &mut Vec<Record<'static>>) -> anyhow::Result<String> {
         let (names, steps) = self.widths();
-        let paper =
-            if self.published.is_empty() { String::new() } else { format!("  {:>10} {:<12}", "paper", "phases") };
+        let paper = if self.is_published() { format!("  {:>10} {:<12}", "paper", "phases") } else { String::new() };
         output::say!(
             "{:<names$} {:<9} {:>10} {:<7} {:>6} {:<steps$} {:>9} {:>9} {:>9}{paper} active  between    real legs",
             "gait",
@@ -132,7 +123,7 @@ impl Table {
                 result.examine(*gait, self.settings.examination);
                 output::write_json(&folder.join(format!("{name}-{}.json", criterion.name())), &result)?;
                 let record = Record::issued(result, *gait);
-                bar.suspend(|| output::quiet_when_closed(self.row(&record)))?;
+                bar.suspend(|| output::quiet_when_closed(self.row(&record, gait.description())))?;
                 records.push(record);
             }
         }
@@ -150,17 +141,17 @@ impl Table {
         (names, descriptions().map(|d| d.phases.len() * DURATION).fold(DURATIONS.len(), usize::max))
     }
 
-    fn row(&self, record: &Record) -> std::io::Result<()> {
+    fn row(&self, record: &Record, description: &Description) -> std::io::Result<()> {
         let r = &record.result;
         let mut out = output::person();
         let (names, steps) = self.widths();
         let durations: Vec<String> = r.durations.iter().map(|t| decimal(*t, 3)).collect();
-        let published = self.published.iter().find(|p| p.gait == r.gait && p.criterion == r.criterion);
+        let published = self.published(description, r.criterion);
         let beside = |p: &Published| format!("  {:>10.2} {:<12}", p.cost, p.durations);
         let paper = match published {
             Some(published) => beside(published),
-            None if self.published.is_empty() => String::new(),
-            None => format!("  {:>10} {:<12}", "", ""),
+            None if self.is_published() => format!("  {:>10} {:<12}", "", ""),
+            None => String::new(),
         };
         match (r.cost, &r.receipt) {
             (Some(cost), Some(receipt @ Receipt { kkt_residual: Some(kkt), .. })) => writeln!(

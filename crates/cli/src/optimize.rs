@@ -10,8 +10,16 @@ use piaffe_optimizer::search::multi_start::Settings;
 use piaffe_optimizer::search::relative::related;
 use piaffe_optimizer::search::watch::Event;
 use piaffe_sqp::Control;
+use std::time::Instant;
 
-pub fn run(task: Task, real_legs: bool, settings: &Settings, json: Option<&str>) -> anyhow::Result<bool> {
+/// `started` is when the program was: its time is told.
+pub fn run(
+    task: Task,
+    real_legs: bool,
+    settings: &Settings,
+    json: Option<&str>,
+    started: Instant,
+) -> anyhow::Result<bool> {
     output::check(json)?;
     let bar = Progress::new(Counted::Starts(settings.starts));
     let watch = |event| {
@@ -23,7 +31,7 @@ pub fn run(task: Task, real_legs: bool, settings: &Settings, json: Option<&str>)
         }
         Control::Continue
     };
-    let result = task.answer(real_legs, settings, &watch).map_err(anyhow::Error::msg)?;
+    let mut result = task.answer(real_legs, settings, &watch).map_err(anyhow::Error::msg)?;
     let described = json != Some("-");
     let mut grounded = None;
     if described && !summary::shortest_flights(task.gait.description(), &result).is_empty() {
@@ -31,6 +39,7 @@ pub fn run(task: Task, real_legs: bool, settings: &Settings, json: Option<&str>)
         grounded = without_flights(task.gait, &result, settings);
     }
     bar.finish_and_clear();
+    result.seconds = started.elapsed().as_secs_f64();
     if let Some(target) = json {
         output::json_to(target, &result)?;
     }
@@ -54,7 +63,11 @@ fn without_flights(gait: &dyn Gait, result: &GaitResult, asked: &Settings) -> Op
         Some((walk, related(of, &motion, d).filter(|_| !d.flies())?))
     });
     let (walk, motion) = grounded?;
-    let settings = Settings { starts: Some(STARTS_BESIDE), examination: asked.examination, ..Settings::default() };
     let task = Task { gait: walk, criterion: result.criterion, speed: result.speed };
-    Some(task.search(&settings, &[theta(&motion)], &|_| {}))
+    let search = |starts| {
+        let settings = Settings { starts, examination: asked.examination, ..Settings::default() };
+        task.search(&settings, &[theta(&motion)], &|_| {})
+    };
+    // Few starts do not settle that there is nothing.
+    Some(search(Some(STARTS_BESIDE))).filter(GaitResult::is_optimal).or_else(|| Some(search(None)))
 }

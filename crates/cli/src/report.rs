@@ -105,8 +105,8 @@ fn different(all: Vec<Stated>) -> anyhow::Result<Vec<GaitResult>> {
 /// Numbers that a robot's name has on a page; with more it is the how-manieth.
 const NAMED: usize = 3;
 
-/// What tells the robot of each result from those of others, where there are several with one name and gait: the numbers in
-/// which they differ.
+/// What tells the robot of each result from those of others, where there are several: its name, and of those with one name and gait
+/// the numbers in which they differ.
 fn designs<'r>(results: impl Iterator<Item = &'r GaitResult>) -> Vec<Option<String>> {
     let results: Vec<&GaitResult> = results.collect();
     let named = |result: &&GaitResult| {
@@ -125,7 +125,10 @@ fn designs<'r>(results: impl Iterator<Item = &'r GaitResult>) -> Vec<Option<Stri
             names.extend(new.filter(|name| !names.contains(name)).collect::<Vec<_>>());
         }
         let told = !names.is_empty() && names.len() <= NAMED;
-        (robots.len() > 1).then(|| if told { names.join(" ") } else { format!("robot {}", place + 1) })
+        let numbers = (robots.len() > 1).then(|| if told { names.join(" ") } else { format!("robot {}", place + 1) });
+        let name = results.iter().any(|r| r.robot != result.robot).then(|| result.robot.clone());
+        let parts: Vec<String> = name.into_iter().chain(numbers).collect();
+        (!parts.is_empty()).then(|| parts.join(", "))
     };
     results.iter().map(named).collect()
 }

@@ -178,14 +178,19 @@ pub fn write(study: &Study, shard: Shard, answers: &Answers, rows: &[Row], path:
         &piaffe_study::parquet(&columns, rows).context("cannot write the table")?,
     )?;
     let shown = if shard == Shard::WHOLE { Some(page(study, answers, rows, path)?) } else { None };
-    output::quiet_when_closed(tell(study, rows))?;
+    if rows.is_empty() {
+        output::say!("part {shard} has no robots: the study has {}", study.designs.count());
+    } else {
+        output::quiet_when_closed(tell(study, rows))?;
+    }
     output::say!("rows in {}", path.join(TABLE).display());
     match shown {
         Some(Some(page)) => output::say!("To be seen in {}", page.display()),
         Some(None) => output::say!("no page: there is no walk to show"),
         None => {}
     }
-    Ok(rows.iter().any(|row| row.optimum.is_some()))
+    // A part has done what was asked when its rows are there: only the whole can tell that no robot has an optimum.
+    Ok(shard != Shard::WHOLE || rows.iter().any(|row| row.optimum.is_some()))
 }
 
 /// Writes the page of a study, with the walks that are worth showing as results of their own; tells where it is, if there are any.

@@ -11,7 +11,7 @@ use piaffe_optimizer::result::{GaitResult, NotExamined, Status};
 use piaffe_optimizer::search::evidence::Effort;
 use piaffe_optimizer::sensitivity::Sensitivity;
 use piaffe_verify::certificate::Certificate;
-use std::io::Write;
+use std::io::{self, Write};
 
 /// A certificate in a line.
 fn standing(c: &Certificate) -> String {
@@ -93,32 +93,51 @@ pub fn shortest_flights(description: &Description, r: &GaitResult) -> Vec<f64> {
     let flights = description.phases.iter().zip(&r.durations).filter(|(phase, _)| phase.mode == Mode::Flight);
     let shortest =
         flights.map(|(phase, t)| (phase.duration[0], *t)).filter(|(least, t)| *t <= least * (1.0 + SHORTEST));
-    let mut lengths: Vec<f64> = shortest.map(|(least, _)| least).collect();
+    each_once(shortest.map(|(least, _)| least))
+}
+
+/// Different lengths, the shortest first.
+fn each_once(lengths: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut lengths: Vec<f64> = lengths.collect();
+    lengths.sort_by(f64::total_cmp);
     lengths.dedup();
     lengths
 }
 
 /// Prints all there is to know about a result; `grounded` is the optimum of the gait without flights, where that was looked for.
-pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitResult>) -> std::io::Result<()> {
+pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitResult>) -> io::Result<()> {
     let mut out = super::output::person();
     writeln!(out, "{} of {}, least {} at {} m/s: {}", r.gait, r.robot, r.criterion.name(), digits(r.speed), r.message)?;
-    if !r.conflicts.is_empty() {
-        for c in &r.conflicts {
-            let what = if c.violation > 1e-8 {
-                format!("violated by {} (scaled)", at_least(c.violation, 3, 2))
-            } else {
-                "in the way".into()
-            };
-            writeln!(out, "  {:<34} phase {}, t = {} s: {what}", c.constraint, c.phase, decimal(c.time, 3))?;
-        }
+    in_the_way(&mut out, description, r)?;
+    costs(&mut out, description, r)?;
+    steps(&mut out, description, r, grounded)?;
+    out.write_all(peaks::table(description, &r.peaks).as_bytes())?;
+    receipt(&mut out, r)?;
+    examined(&mut out, description, r)?;
+    searched(&mut out, description, r)?;
+    writeln!(out, "  time            {:.3} s", r.seconds)
+}
+
+/// What keeps a motion from being, and where there is one.
+fn in_the_way(out: &mut impl Write, description: &Description, r: &GaitResult) -> io::Result<()> {
+    for c in &r.conflicts {
+        let what = if c.violation > 1e-8 {
+            format!("violated by {} (scaled)", at_least(c.violation, 3, 2))
+        } else {
+            "in the way".into()
+        };
+        writeln!(out, "  {:<34} phase {}, t = {} s: {what}", c.constraint, c.phase, decimal(c.time, 3))?;
     }
     match r.nearest_speed {
-        Some(v) => writeln!(out, "  The nearest speed found to work is {} m/s.", digits(v))?,
+        Some(v) => writeln!(out, "  The nearest speed found to work is {} m/s.", digits(v)),
         None if r.status == Status::Infeasible && description.contradictions().is_empty() => {
-            writeln!(out, "  No speed was found that works: loosen one of these limits in the specification.")?;
+            writeln!(out, "  No speed was found that works: loosen one of these limits in the specification.")
         }
-        None => {}
+        None => Ok(()),
     }
+}
+
+fn costs(out: &mut impl Write, description: &Description, r: &GaitResult) -> io::Result<()> {
     if let (Some(cost), Some(costs)) = (r.cost, r.costs) {
         writeln!(out, "  cost            {} {}", decimal(cost, 4), r.criterion.unit())?;
         if let Some(without) = r.virtual_cost {
@@ -132,58 +151,65 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
         let transport = description.cost_of_transport(costs);
         writeln!(out, "  of transport    {transport:.4} (energy per weight and distance)")?;
     }
-    if let Some(travel) = r.step_length {
-        let durations: Vec<String> = r.durations.iter().map(|t| format!("{} s", decimal(*t, 4))).collect();
-        writeln!(out, "  phases          {}", durations.join(" + "))?;
-        let shortest: Vec<String> = shortest_flights(description, r).into_iter().map(digits).collect();
-        if !shortest.is_empty() {
-            let it = if shortest.len() > 1 { "them" } else { "it" };
-            let without = match grounded {
-                None => format!("the gait without {it} may cost less"),
-                Some(GaitResult { gait, cost: Some(cost), .. }) => {
-                    format!("without {it}, {gait} takes at most {} {}", decimal(*cost, 4), r.criterion.unit())
-                }
-                Some(GaitResult { gait, .. }) => format!("without {it}, no {gait} was found at this speed"),
-            };
-            writeln!(out, "  flight          as short as is allowed ({} s): {without}", shortest.join(" and "))?;
-        }
-        let which = if description.then == Then::Mirrored { "half step" } else { "whole step" };
-        writeln!(out, "  {which:<15} {} m", decimal(travel, 4))?;
+    Ok(())
+}
+
+/// Phases and travel.
+fn steps(
+    out: &mut impl Write,
+    description: &Description,
+    r: &GaitResult,
+    grounded: Option<&GaitResult>,
+) -> io::Result<()> {
+    let Some(travel) = r.step_length else { return Ok(()) };
+    let durations: Vec<String> = r.durations.iter().map(|t| format!("{} s", decimal(*t, 4))).collect();
+    writeln!(out, "  phases          {}", durations.join(" + "))?;
+    let shortest: Vec<String> = shortest_flights(description, r).into_iter().map(digits).collect();
+    if !shortest.is_empty() {
+        let it = if shortest.len() > 1 { "them" } else { "it" };
+        let without = match grounded {
+            None => format!("the gait without {it} may cost less"),
+            Some(GaitResult { gait, cost: Some(cost), .. }) => {
+                format!("without {it}, {gait} takes at most {} {}", decimal(*cost, 4), r.criterion.unit())
+            }
+            Some(GaitResult { gait, .. }) => format!("without {it}, no {gait} was found at this speed"),
+        };
+        writeln!(out, "  flight          as short as is allowed ({} s): {without}", shortest.join(" and "))?;
     }
-    out.write_all(peaks::table(description, &r.peaks).as_bytes())?;
-    if let Some(receipt) = &r.receipt {
-        writeln!(
-            out,
-            "  receipt         largest violation {:.1e}, cycle error {:.1e}, KKT residual {} ({} points per phase)",
-            receipt.max_violation,
-            receipt.cycle_error,
-            receipt.kkt_residual.map_or("unknown".into(), |kkt| format!("{kkt:.1e}")),
-            receipt.grid
-        )?;
-        if let Some(certificate) = &r.certificate {
-            writeln!(out, "  certificate     {}", standing(certificate))?;
-        }
-        let active: Vec<String> = receipt
-            .findings
-            .iter()
-            .map(|f| format!("{} (phase {}, t = {} s)", f.constraint, f.phase, decimal(f.time, 3)))
-            .collect();
-        writeln!(
-            out,
-            "  active          {}",
-            if active.is_empty() { "nothing".into() } else { active.join("\n                  ") }
-        )?;
-        if let Some(worst) = receipt.worst.as_ref().filter(|_| r.status != Status::Optimal) {
-            writeln!(
-                out,
-                "  worst           {} (phase {}, t = {} s): {:.2e}",
-                worst.constraint,
-                worst.phase,
-                decimal(worst.time, 3),
-                worst.margin
-            )?;
-        }
+    let which = if description.then == Then::Mirrored { "half step" } else { "whole step" };
+    writeln!(out, "  {which:<15} {} m", decimal(travel, 4))
+}
+
+/// The receipt, its proof between the instants, and the limits without room.
+fn receipt(out: &mut impl Write, r: &GaitResult) -> io::Result<()> {
+    let Some(receipt) = &r.receipt else { return Ok(()) };
+    writeln!(
+        out,
+        "  receipt         largest violation {:.1e}, cycle error {:.1e}, KKT residual {} ({} points per phase)",
+        receipt.max_violation,
+        receipt.cycle_error,
+        receipt.kkt_residual.map_or("unknown".into(), |kkt| format!("{kkt:.1e}")),
+        receipt.grid
+    )?;
+    if let Some(certificate) = &r.certificate {
+        writeln!(out, "  certificate     {}", standing(certificate))?;
     }
+    let active: Vec<String> = receipt
+        .findings
+        .iter()
+        .map(|f| format!("{} (phase {}, t = {} s)", f.constraint, f.phase, decimal(f.time, 3)))
+        .collect();
+    let active = if active.is_empty() { "nothing".into() } else { active.join("\n                  ") };
+    writeln!(out, "  active          {active}")?;
+    if let Some(worst) = receipt.worst.as_ref().filter(|_| r.status != Status::Optimal) {
+        let (name, phase, time) = (&worst.constraint, worst.phase, decimal(worst.time, 3));
+        writeln!(out, "  worst           {name} (phase {phase}, t = {time} s): {:.2e}", worst.margin)?;
+    }
+    Ok(())
+}
+
+/// What an optimum is held by and worth, what becomes of a push, whether the real legs can do it.
+fn examined(out: &mut impl Write, description: &Description, r: &GaitResult) -> io::Result<()> {
     if let Some(optimality) = &r.optimality {
         let held = match optimality.holders().as_slice() {
             [] => "by nothing but the cycle".into(),
@@ -207,6 +233,11 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
     for NotExamined { entry, reason } in &r.not_examined {
         writeln!(out, "  not examined    {} ({reason})", entry.replace('_', " "))?;
     }
+    Ok(())
+}
+
+/// How widely was looked, and what else was found.
+fn searched(out: &mut impl Write, description: &Description, r: &GaitResult) -> io::Result<()> {
     if description.contradictions().is_empty() {
         writeln!(out, "  search          {}", confidence(r))?;
     }
@@ -225,12 +256,17 @@ pub fn print(description: &Description, r: &GaitResult, grounded: Option<&GaitRe
             writeln!(out, "    {:>12}  {}  {}", decimal(o.cost, 4), durations.join("/"), o.reached)?;
         }
     }
-    writeln!(out, "  time            {:.3} s", r.seconds)
+    Ok(())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn each_length_is_told_once_wherever_it_stands() {
+        assert_eq!(each_once([0.03, 0.015, 0.03].into_iter()), [0.015, 0.03]);
+    }
 
     #[test]
     fn a_slope_promises_no_more_than_it_can_keep() {

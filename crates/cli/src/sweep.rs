@@ -15,8 +15,8 @@ use piaffe_optimizer::search::atlas::{self, VISITS};
 use piaffe_optimizer::search::crossover::{Comparison, solve};
 use piaffe_optimizer::search::fastest::{MaximumSpeed, maximum_speed};
 use piaffe_optimizer::search::multi_start::Settings;
-use piaffe_report::Record;
 use piaffe_report::overview::{Greatest, Overview};
+use piaffe_report::{Record, is_one_speed, told_apart};
 use piaffe_study::{multiples, steps};
 use rayon::prelude::*;
 use std::io::Write;
@@ -220,9 +220,11 @@ fn words(comparison: &Comparison, ends: &[Greatest]) -> String {
     let mut text = format!("{}: ", comparison.criterion.name());
     for x in &comparison.crossovers {
         let [below, above] = x.bracket;
-        let at = match above - below < 1e-3 {
-            true => format!("at {:.3}", 0.5 * (below + above)),
-            false => format!("between {below:.3} and {above:.3}"),
+        let at = if is_one_speed(x.bracket) {
+            format!("at {}", decimal(0.5 * (below + above), 3))
+        } else {
+            let [below, above] = told_apart(x.bracket);
+            format!("between {below} and {above}")
         };
         text += &format!("{} overtakes {} {at} m/s; ", x.to, other(&x.to));
         cheaper.clone_from(&x.to);
@@ -231,7 +233,7 @@ fn words(comparison: &Comparison, ends: &[Greatest]) -> String {
         Some(end) => format!("until the {} ends", end.gait),
         None => "to the end of the sweep".into(),
     };
-    text + &format!("{cheaper} is cheaper than {} {until} at {last:.3} m/s", other(&cheaper))
+    text + &format!("{cheaper} is cheaper than {} {until} at {} m/s", other(&cheaper), decimal(last, 3))
 }
 
 /// More speeds than this are a slip of the pen.

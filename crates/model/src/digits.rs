@@ -14,11 +14,25 @@ pub fn few(number: f64) -> String {
     digits(format!("{number:.3e}").parse().unwrap_or(number))
 }
 
-/// A positive number with four digits, rounded up or down: what is printed is what was tried, or is within a bound.
+/// A number with four digits, rounded up or down: what is printed is what was tried, or is within a bound.
 pub fn legible(number: f64, up: bool) -> f64 {
-    let unit = 10f64.powf(number.log10().floor() - 3.0);
-    let digits = if up { (number / unit).ceil() } else { (number / unit).floor() };
-    format!("{:.3e}", digits * unit).parse().unwrap_or(number)
+    // What is printed is rounded to nearest: on the wrong side of the number by less than a unit of its last digit.
+    let Some((digits, power)) = parts(number) else { return number };
+    let nearest = value(digits, power);
+    let wrong = if up { nearest < number } else { nearest > number };
+    let step = if up { 1 } else { -1 };
+    if wrong { value(digits + step, power) } else { nearest }
+}
+
+/// The four digits of a number and the power of ten of the last; none of what has none.
+fn parts(number: f64) -> Option<(i64, i32)> {
+    let text = format!("{number:.3e}");
+    let (digits, power) = text.split_once('e')?;
+    Some((digits.replace('.', "").parse().ok()?, power.parse::<i32>().ok()? - 3))
+}
+
+fn value(digits: i64, power: i32) -> f64 {
+    format!("{digits}e{power}").parse().unwrap_or(f64::NAN)
 }
 
 #[cfg(test)]
@@ -41,6 +55,11 @@ mod tests {
         for number in [135.8786, 1.0866, 2.5e-7, 9.9999e4] {
             let (down, up) = (legible(number, false), legible(number, true));
             assert!(down <= number && number <= up && up - down < 2e-3 * number, "{down} {number} {up}");
+            assert_eq!([legible(-number, true), legible(-number, false)], [-down, -up]);
         }
+        for number in [0.0, 0.6, -1e-300, 135.8, f64::INFINITY] {
+            assert_eq!([legible(number, true), legible(number, false)], [number; 2]);
+        }
+        assert!(legible(f64::NAN, true).is_nan());
     }
 }

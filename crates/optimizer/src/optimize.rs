@@ -74,6 +74,7 @@ impl<'a> Task<'a> {
     /// # Errors
     /// If limits cannot be imposed at each real leg, why.
     pub fn answer(&self, real_legs: bool, settings: &Settings, watch: Watch) -> Result<GaitResult, String> {
+        let started = Instant::now();
         let altered = real_legs.then(|| Altered::at_real_legs(self.gait)).transpose()?;
         let mut result = self.watched(settings, &[], watch);
         let mut task = *self;
@@ -91,6 +92,7 @@ impl<'a> Task<'a> {
             result.nearest_speed = nearest_speed(task.gait, self.criterion, self.speed, settings);
         }
         result.examine(task.gait, settings.examination);
+        result.seconds = started.elapsed().as_secs_f64();
         Ok(result)
     }
 

@@ -130,7 +130,7 @@ pub struct GaitResult {
     /// What robot and gait were derived from. With it any machine can derive anew what is stated here.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub specification: Option<Specification>,
-    /// Wall time of search and receipt.
+    /// Wall time of all that was done for it.
     pub seconds: f64,
     pub version: String,
 }

@@ -32,6 +32,17 @@ pub struct Extremes {
 /// Brackets narrower than this are told as one speed, m/s per m/s.
 const NARROW: f64 = 1e-3;
 
+/// Whether two speeds are so near to each other that one of them tells both.
+pub fn is_one_speed([below, above]: [f64; 2]) -> bool {
+    above - below <= NARROW * above
+}
+
+/// Two speeds with as many digits as tell them apart.
+pub fn told_apart(speeds: [f64; 2]) -> [String; 2] {
+    let tell = |digits| speeds.map(|v| significant(v, digits));
+    (3..9).map(tell).find(|[a, b]| a != b).unwrap_or_else(|| tell(9))
+}
+
 /// Where one gait becomes cheaper than another.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Crossing {
@@ -49,11 +60,9 @@ impl Crossing {
     pub fn place(&self) -> String {
         let [below, above] = self.bracket;
         match self.at {
-            Some([speed, _]) if above - below <= NARROW * above => format!("at {} m/s", significant(speed, 4)),
+            Some([speed, _]) if is_one_speed(self.bracket) => format!("at {} m/s", significant(speed, 4)),
             _ => {
-                // As many digits as tell them apart.
-                let tell = |digits| [below, above].map(|v| significant(v, digits));
-                let [below, above] = (3..9).map(tell).find(|[a, b]| a != b).unwrap_or_else(|| tell(9));
+                let [below, above] = told_apart([below, above]);
                 format!("between {below} and {above} m/s")
             }
         }

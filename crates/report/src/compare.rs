@@ -2,8 +2,8 @@
 
 use super::marks::marks;
 use super::number::{digits, given, significant};
-use super::page::{capital, durations};
-use super::subject::{Subject, spaced};
+use super::page::durations;
+use super::subject::{Subject, capital, spaced};
 use maud::{Markup, html};
 use piaffe_model::motion::Criterion;
 use piaffe_optimizer::result::GaitResult;
@@ -14,43 +14,66 @@ const NAMED: usize = 3;
 
 /// A table for every question that more than one of these answer, the best first.
 pub fn section(subjects: &[&Subject]) -> Markup {
-    let mut questions: Vec<(Criterion, f64, Vec<&Subject>)> = Vec::new();
+    let mut questions: Vec<Question> = Vec::new();
     for s in subjects {
         let (criterion, speed) = (s.result.criterion, s.result.speed);
-        match questions.iter_mut().find(|q| (q.0, q.1) == (criterion, speed)) {
-            Some(question) => question.2.push(s),
-            None => questions.push((criterion, speed, vec![s])),
+        match questions.iter_mut().find(|q| (q.criterion, q.speed) == (criterion, speed)) {
+            Some(question) => question.answers.push(s),
+            None => questions.push(Question { criterion, speed, answers: vec![s] }),
         }
     }
-    questions.retain(|q| q.2.len() > 1);
-    questions.iter_mut().for_each(|q| q.2.sort_by(|a, b| a.cost.total_cmp(&b.cost)));
+    questions.retain(|q| q.answers.len() > 1);
     html! {
-        @for (criterion, speed, list) in &questions { (question(*criterion, *speed, list)) }
+        @for question in &questions { (question.table()) }
     }
 }
 
-fn question(criterion: Criterion, speed: f64, list: &[&Subject]) -> Markup {
-    let most = list.iter().map(|s| s.cost).fold(0.0, f64::max);
-    html! {
-        h3 { "Least " (criterion.name()) " at " (given(speed)) " m/s" }
-        div.scroll { table.compare {
-            thead { tr {
-                th { "gait" } th.n { "cost, " (criterion.unit()) } th { "against the best" } th.n { "cost of transport" }
-                th { "phases, s" } th.n { "travel, m" } th { "spent by" } th { "held by" } th { "between the instants" } th { "real legs" }
+/// What several walks answer.
+struct Question<'q> {
+    criterion: Criterion,
+    speed: f64,
+    answers: Vec<&'q Subject<'q>>,
+}
+
+impl Question<'_> {
+    /// Whether they are of several robots.
+    fn is_of_several(&self) -> bool {
+        self.answers.windows(2).any(|pair| pair[0].result.robot != pair[1].result.robot)
+    }
+
+    /// By what the best is told: robots of any size and weight compare by their cost of transport.
+    fn measure(&self, s: &Subject) -> f64 {
+        if self.is_of_several() { s.transport } else { s.cost }
+    }
+
+    fn table(&self) -> Markup {
+        let mut list = self.answers.clone();
+        list.sort_by(|a, b| self.measure(a).total_cmp(&self.measure(b)));
+        let of = |s: &Subject| self.measure(s) / self.measure(list[0]);
+        let most = list.iter().map(|s| of(s)).fold(0.0, f64::max);
+        html! {
+            h3 { "Least " (self.criterion.name()) " at " (given(self.speed)) " m/s" }
+            @if self.is_of_several() { p.note { "Of several robots: the best is that of least cost of transport." } }
+            div.scroll { table.compare {
+                thead { tr {
+                    th { "gait" } th.n { "cost, " (self.criterion.unit()) } th { "against the best" } th.n { "cost of transport" }
+                    th { "phases, s" } th.n { "travel, m" } th { "spent by" } th { "held by" } th { "between the instants" } th { "real legs" }
+                } }
+                tbody { @for s in &list { (row(s, of(s), most)) } }
             } }
-            tbody { @for s in list { (row(s, list[0].cost, most)) } }
-        } }
+        }
     }
 }
 
-fn row(s: &Subject, best: f64, most: f64) -> Markup {
+/// `ratio` is how much it takes of the best, `most` the largest of these.
+fn row(s: &Subject, ratio: f64, most: f64) -> Markup {
     let [_, between, real] = marks(&s.result);
     html! {
         tr {
             td { a href=(format!("#{}", s.id)) { (capital(&s.variant)) } }
             td.n { b { (digits(s.cost, 6)) } }
-            td { span.bar.long { span style=(format!("width:{:.1}%", 100.0 * s.cost / most)) {} } " "
-                @if s.cost == best { "the best" } @else { (against(s.cost / best)) } }
+            td { span.bar.long { span style=(format!("width:{:.1}%", 100.0 * ratio / most)) {} } " "
+                @if ratio == 1.0 { "the best" } @else { (against(ratio)) } }
             td.n { (digits(s.transport, 3)) }
             td { (durations(&s.result)) }
             td.n { @if let Some(length) = s.result.step_length { (digits(length, 4)) } }

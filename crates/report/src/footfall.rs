@@ -31,8 +31,8 @@ pub fn figure(s: &Subject) -> Figure {
         let y = 8.0 + ROW * row as f64;
         scene.text([left - 10.0, y + 12.0], &spaced(name), 11.0, Anchor::End, Ink::Text);
         scene.line(&[[left, y + 8.0], [width - RIGHT, y + 8.0]], Pen::new(Ink::Grid, 1.0));
-        for half in s.walk.phases.iter().filter(|phase| phase.mode == Mode::Stance(*leg)) {
-            let [a, b] = [half.start, half.start + half.duration].map(|t| time.at(t));
+        for phase in s.walk.phases.iter().filter(|span| span.mode == Mode::Stance(*leg)) {
+            let [a, b] = [phase.start, phase.start + phase.duration].map(|t| time.at(t));
             scene.rectangle([a, y + 2.0], [b - a, 12.0], Ink::Leg(*leg), 1.0);
         }
     }

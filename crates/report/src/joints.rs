@@ -5,7 +5,7 @@ use super::ink::Ink;
 use super::number::given;
 use super::plot::{Curve, Limit, Plot};
 use super::scale::domain;
-use super::subject::{Kind, Subject, spaced};
+use super::subject::{Kind, Subject, capital, spaced};
 use piaffe_model::Rotation;
 
 /// Limits this much beyond the values are said rather than drawn: they would flatten the curves.
@@ -83,10 +83,4 @@ pub fn angles(s: &Subject) -> Vec<Figure> {
 fn roomy(values: impl Iterator<Item = f64>) -> [f64; 2] {
     let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)]);
     [low - 0.08 * (high - low), high + 0.08 * (high - low)]
-}
-
-fn capital(word: &str) -> String {
-    let word = spaced(word);
-    let mut letters = word.chars();
-    letters.next().map_or(String::new(), |c| c.to_uppercase().chain(letters).collect())
 }

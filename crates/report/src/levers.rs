@@ -16,7 +16,7 @@ pub fn section(r: &GaitResult) -> Markup {
     html! {
         div.receipt {
             h3 { "What to change" }
-            p { "How the least " (r.criterion.name()) " moves with every number of the specification, as the motion adapts. Numbers that must stay alike for the gait (in braces) change together, by the same share. The elasticity is in percent of the criterion per percent of the number; where it is negative, a larger number, farther from zero, is better." }
+            p { "How the least " (r.criterion.name()) " moves with every number of the specification, as the motion adapts. Numbers that must stay alike for the gait (in braces) change together, by the same share. The elasticity is in percent of the criterion per percent of the number; where it is negative, a larger number, farther from zero, is better. A number that is zero has a slope alone." }
             div.scroll { table {
                 thead { tr { th { "number" } th.n { "value" } th.n { "elasticity" } th.n { "slope" } } }
                 tbody { @for s in effective.iter().take(SHOWN) { (row(s, unit)) } }
@@ -43,6 +43,26 @@ fn row(s: &Sensitivity, unit: &str) -> Markup {
     let per = if s.unit.is_empty() { String::new() } else { format!(" per {}", s.unit) };
     html! {
         tr { td { (s.parameter) } td.n { (given(s.value)) " " (s.unit) }
-            td.n { b { (digits(s.elasticity, 4)) } } td.n { (digits(s.slope, 4)) " " (unit) (per) } }
+            td.n { b { @if s.value == 0.0 { "–" } @else { (digits(s.elasticity, 4)) } } } td.n { (digits(s.slope, 4)) " " (unit) (per) } }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_that_is_zero_has_a_slope_and_no_elasticity() {
+        let of = |value: f64| Sensitivity {
+            parameter: "joints.knee.damping".into(),
+            numbers: vec!["joints.knee.damping".into()],
+            unit: "N·m·s".into(),
+            value,
+            slope: 2.0,
+            elasticity: 0.5 * value,
+        };
+        let shown = |value| row(&of(value), "N").into_string();
+        assert!(shown(0.0).contains("<b>–</b>") && shown(0.0).contains("2.000 N per"), "{}", shown(0.0));
+        assert!(shown(1.0).contains("<b>0.5000</b>"), "{}", shown(1.0));
     }
 }

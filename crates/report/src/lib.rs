@@ -38,7 +38,7 @@ mod svg;
 mod swing;
 mod words;
 
-pub use atlas::Extremes;
+pub use atlas::{Extremes, is_one_speed, told_apart};
 pub use figure::Figure;
 pub use record::{Record, Standing};
 pub use subject::Subject;

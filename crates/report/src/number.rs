@@ -73,9 +73,15 @@ pub fn given(value: f64) -> String {
     Number::trimmed(value, 6).text()
 }
 
-/// How far from zero something is: two digits and a power of ten.
+/// Nothing, in natural units: what rounding leaves of a zero.
+const ROUNDING: f64 = 1e-16;
+
+/// How far from zero something in natural units is: two digits and a power of ten.
 pub fn scientific(value: f64) -> Markup {
-    if value == 0.0 || !value.is_finite() {
+    if value.abs() < ROUNDING {
+        return digits(0.0, 2);
+    }
+    if !value.is_finite() {
         return digits(value, 2);
     }
     let text = format!("{value:.1e}");
@@ -100,6 +106,7 @@ mod tests {
         );
         assert_eq!(digits(6.759_8e-4, 3).into_string(), "6.76·10<sup>−4</sup>");
         assert_eq!(scientific(3.4e-9).into_string(), "3.4·10<sup>−9</sup>");
+        assert_eq!([0.0, -1e-139].map(|zero| scientific(zero).into_string()), ["0", "0"]);
         assert_eq!([f64::NAN, f64::INFINITY, f64::NEG_INFINITY].map(four), ["–", "inf", "−inf"]);
     }
 }

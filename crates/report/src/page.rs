@@ -6,7 +6,7 @@ use super::font::Weight;
 use super::marks::marks;
 use super::number::{digits, given, scientific, significant};
 use super::space::Space;
-use super::subject::{Subject, spaced};
+use super::subject::{Subject, capital, spaced};
 use super::words::meaning;
 use super::{Record, Report, Standing};
 use super::{certificate, compare, ink, levers, marks, player, price, real_legs, recovery, svg};
@@ -90,13 +90,6 @@ fn title(report: &Report) -> String {
         }
         (None, _) => format!("Optimal gaits of {robots}"),
     }
-}
-
-/// A name of the specification at the beginning of a line.
-pub fn capital(name: &str) -> String {
-    let name = spaced(name);
-    let mut letters = name.chars();
-    letters.next().map_or(String::new(), |c| c.to_uppercase().chain(letters).collect())
 }
 
 fn task(r: &GaitResult) -> String {

@@ -26,8 +26,8 @@ pub fn data(s: &Subject) -> Value {
         .collect();
     let mounts = d.legs.iter().flat_map(|leg| leg.members.iter()).map(|m| metre * m.mount()[2].abs());
     let widest = mounts.fold(0.0, f64::max);
-    let per_half = s.walk.moments.iter().filter(|m| m.phase == 0).count();
-    let shown = s.walk.moments.iter().enumerate().filter(|(k, _)| (k % per_half).is_multiple_of(EVERY));
+    let of_phase = s.walk.moments.iter().filter(|m| m.phase == 0).count();
+    let shown = s.walk.moments.iter().enumerate().filter(|(k, _)| (k % of_phase).is_multiple_of(EVERY));
     let real = Legs::new(s.gait);
     let frames: Vec<Value> = shown
         .map(|(_, m)| {

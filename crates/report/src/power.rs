@@ -34,9 +34,9 @@ pub fn integral(s: &Subject) -> Figure {
     };
     let mut sum = 0.0;
     let mut curve: Vec<Vec<Xy>> = Vec::new();
-    for half in s.finely(FINE, rate) {
-        let mut points = vec![[half[0][0], sum]];
-        for (k, w) in half.windows(2).enumerate() {
+    for phase in s.finely(FINE, rate) {
+        let mut points = vec![[phase[0][0], sum]];
+        for (k, w) in phase.windows(2).enumerate() {
             sum += 0.5 * (w[1][0] - w[0][0]) * (w[0][1] + w[1][1]);
             if (k + 1) % FINE == 0 {
                 points.push([w[1][0], sum]);

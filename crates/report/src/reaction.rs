@@ -30,12 +30,16 @@ pub fn friction(s: &Subject) -> Figure {
     let mu = s.description().limits.friction;
     let share = |m: &Moment| m.force[0].hypot(m.force[2]) / m.force[1];
     let mut plot = s.time_plot("Friction used", "tangential / vertical");
-    plot.curves.push(Curve::new("tangential / vertical force", Ink::Text, s.over_time(share)));
+    // In flight there is no force.
+    let stands = s.walk.phases.iter().map(|phase| phase.mode.stance().is_some());
+    let on_a_foot: Vec<_> = s.over_time(share).into_iter().zip(stands).filter(|(_, stands)| *stands).collect();
+    let segments: Vec<_> = on_a_foot.into_iter().map(|(segment, _)| segment).collect();
+    let most = segments.iter().flatten().map(|p| p[1]).fold(0.0, f64::max);
+    plot.curves.push(Curve::new("tangential / vertical force", Ink::Text, segments));
     let [from, to] = plot.x.domain.unwrap_or_default();
     plot.limits.push(Limit { name: format!("friction cone {}", given(mu)), points: vec![[from, mu], [to, mu]] });
     plot.y.domain = Some([0.0, 1.12 * mu]);
     plot.forbidden = vec![vec![[from, mu], [to, mu], [to, 1.12 * mu], [from, 1.12 * mu]]];
-    let most = s.walk.moments.iter().map(share).fold(0.0, f64::max);
     plot.note = Some(format!(
         "at most {} of {}: {:.0} % in reserve",
         significant(most, 3),

@@ -6,7 +6,7 @@ use super::number::{digits, given};
 use super::plot::{Curve, Limit, Plot};
 use super::scale::domain;
 use super::scene::{Dash, Xy};
-use super::subject::{Subject, spaced};
+use super::subject::{Subject, capital, spaced};
 use maud::{Markup, html};
 use piaffe_model::{Description, Mode};
 use piaffe_optimizer::four_legs::{Instant, Lift, RealLegs, Verdict, Worst};
@@ -100,9 +100,7 @@ pub fn section(legs: &RealLegs, r: &GaitResult, d: &Description) -> Markup {
 }
 
 fn verdict(legs: &RealLegs) -> String {
-    let sentence = legs.sentence();
-    let mut letters = sentence.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect()) + "."
+    capital(&legs.sentence()) + "."
 }
 
 fn worst(what: &str, w: &Worst) -> Markup {

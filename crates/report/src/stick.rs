@@ -146,10 +146,10 @@ impl View {
 
 /// Moments at equal times, both ends of each phase among them.
 fn poses<'s>(s: &'s Subject) -> Vec<&'s Moment> {
-    let half = |h| {
-        let moments: Vec<&Moment> = s.walk.moments.iter().filter(|m| m.phase == h).collect();
+    let of_phase = |k| {
+        let moments: Vec<&Moment> = s.walk.moments.iter().filter(|m| m.phase == k).collect();
         let last = moments.len() - 1;
-        (0..POSES).map(move |k| moments[(k * last + (POSES - 1) / 2) / (POSES - 1)]).collect::<Vec<_>>()
+        (0..POSES).map(move |pose| moments[(pose * last + (POSES - 1) / 2) / (POSES - 1)]).collect::<Vec<_>>()
     };
-    (0..s.walk.phases.len()).flat_map(half).collect()
+    (0..s.walk.phases.len()).flat_map(of_phase).collect()
 }

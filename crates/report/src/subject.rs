@@ -168,7 +168,15 @@ fn by_phase(walk: &Walk, value: impl Fn(&Moment) -> f64) -> Vec<Vec<Xy>> {
     (0..walk.phases.len()).map(of_phase).collect()
 }
 
-/// A name of the specification for a reader.
+/// A name of the specification for a reader. What is a number's, `links.fore_thigh.mass=1.6`, is left as it is written.
 pub fn spaced(name: &str) -> String {
-    name.replace('_', " ")
+    let word = |word: &str| if word.contains('=') { word.to_string() } else { word.replace('_', " ") };
+    name.split(' ').map(word).collect::<Vec<_>>().join(" ")
+}
+
+/// A name of the specification at the beginning of a line.
+pub fn capital(name: &str) -> String {
+    let name = spaced(name);
+    let mut letters = name.chars();
+    letters.next().map_or(String::new(), |c| c.to_uppercase().chain(letters).collect())
 }

@@ -2,11 +2,25 @@
 //! follows from what differs between the robots.
 
 use piaffe_codegen::spec::{default_of, numbers, words};
-use piaffe_model::Specification;
 use piaffe_model::motion::Criterion;
+use piaffe_model::{Description, Gait, Specification};
+use piaffe_optimizer::origin::under_its_limits;
 use piaffe_optimizer::result::{GaitResult, SearchEntry, Status};
+use piaffe_optimizer::search::branch::{carried_to, same};
+use piaffe_optimizer::search::local::Task;
 use piaffe_optimizer::sensitivity::{Sensitivities, Sensitivity};
 use serde::Serialize;
+use std::collections::BTreeSet;
+
+/// Costs that differ by less than this share differ by rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// A result, and the gait that it is of.
+#[derive(Clone, Copy)]
+pub struct Side<'a> {
+    pub result: &'a GaitResult,
+    pub gait: &'a dyn Gait,
+}
 
 /// A value of both.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -26,6 +40,8 @@ pub struct Difference {
     pub words: Vec<Changed<String>>,
     /// Whether robot and gait, with their limits, are the same in both after all.
     pub same_gait: bool,
+    pub kinship: Kinship,
+    pub measures: Pair<Measures>,
     pub limits_at_real_legs: Pair<bool>,
     pub search: Pair<SearchEntry>,
     pub version: Pair<String>,
@@ -41,17 +57,55 @@ pub struct Difference {
     /// Of each phase, s.
     pub durations: Pair<Vec<f64>>,
     pub limits: Vec<Room>,
-    /// Where both are least in the same criterion.
+    /// Of two questions alike, least in the same criterion: others' have nothing to do with each other.
     pub slopes: Vec<Slope>,
     pub verdicts: Pair<Verdicts>,
     pub prediction: Option<Prediction>,
+    /// What A's motion becomes at B's question, and B's at A's, where one can be carried to the other.
+    pub carried: Option<Pair<Carried>>,
 }
 
-/// An entry of the specification; none where nothing of this name is given.
+/// What two questions are to each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kinship {
+    /// They differ in numbers: slopes of one say something of the other.
+    Alike,
+    /// Their gaits move the robot differently.
+    OtherGait,
+    /// Their robots are made of other parts.
+    OtherRobot,
+    /// Not both say what they are of.
+    Unknown,
+}
+
+/// A robot in short.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Measures {
+    /// kg.
+    pub mass: f64,
+    /// N.
+    pub weight: f64,
+    /// m.
+    pub leg_length: f64,
+}
+
+/// A motion that was carried to another question.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Carried {
+    /// Of the optimum in which it ends there; none where it ends in none.
+    pub cost: Option<f64>,
+    /// Whether that is the motion that was found there.
+    pub is_found: bool,
+}
+
+/// An entry of the specification. What a file leaves out is what it means; none where that is nothing.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Changed<T> {
     pub name: String,
     pub values: Pair<Option<T>>,
+    /// Whether it stands in the files.
+    pub given: Pair<bool>,
 }
 
 /// A limit that is active in one of both or both: its margin, scaled, where it is.
@@ -80,7 +134,7 @@ pub struct Verdicts {
     pub certificate: Option<&'static str>,
 }
 
-/// What the slopes let expect of the cost's difference, to first order. Both must be least in the same criterion.
+/// What the slopes let expect of the cost's difference, to first order. Both must be least in the same criterion, and alike.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Prediction {
     /// By each parameter that differs, the largest first.
@@ -91,7 +145,7 @@ pub struct Prediction {
     pub mean: f64,
     /// The cost's difference, B's less A's.
     pub difference: f64,
-    /// Numbers that differ and have no slope: the gait does not depend on them, or it is not known how.
+    /// Numbers that differ and have no slope: the gait does not depend on them, or it is not known how. What they do is in no sum.
     pub without_slope: Vec<String>,
 }
 
@@ -106,16 +160,27 @@ pub struct Part {
 }
 
 impl Difference {
-    pub fn new(a: &GaitResult, b: &GaitResult) -> Difference {
+    pub fn new(of_a: Side, of_b: Side) -> Difference {
+        let (a, b) = (of_a.result, of_b.result);
         let specifications = a.specification.as_ref().zip(b.specification.as_ref());
-        let specified = specifications.is_some();
         let numbers = specifications.map_or(Vec::new(), |(a, b)| changed(a, b));
+        let words = specifications.map_or(Vec::new(), |(a, b)| reworded(a, b));
+        let same_gait = a.fingerprint == b.fingerprint;
+        let kinship = match specifications {
+            _ if same_gait => Kinship::Alike,
+            Some((a, b)) => Kinship::of([a, b], [of_a, of_b].map(|side| side.gait.description()), &words),
+            None => Kinship::Unknown,
+        };
+        let comparable = !matches!(kinship, Kinship::OtherGait | Kinship::OtherRobot) && a.criterion == b.criterion;
         Difference {
-            prediction: Prediction::new(a, b, specified.then_some(&numbers)),
-            specified,
+            prediction: comparable.then(|| Prediction::new(a, b, specifications.map(|_| &numbers))).flatten(),
+            carried: comparable.then(|| carried(of_a, of_b)).flatten(),
+            specified: specifications.is_some(),
             numbers,
-            words: specifications.map_or(Vec::new(), |(a, b)| reworded(a, b)),
-            same_gait: a.fingerprint == b.fingerprint,
+            words,
+            same_gait,
+            kinship,
+            measures: Pair { a: Measures::of(of_a.gait), b: Measures::of(of_b.gait) },
             limits_at_real_legs: pair(a, b, |r| r.limits_at_real_legs),
             search: pair(a, b, |r| r.search),
             version: pair(a, b, |r| r.version.clone()),
@@ -128,9 +193,76 @@ impl Difference {
             cost: pair(a, b, |r| r.cost),
             durations: pair(a, b, |r| r.durations.clone()),
             limits: limits(a, b),
-            slopes: slopes(a, b),
+            slopes: if comparable { slopes(a, b) } else { Vec::new() },
             verdicts: pair(a, b, Verdicts::of),
         }
+    }
+
+    /// B's cost over A's, where both have one of the same criterion. What differs by rounding is the same.
+    pub fn ratio(&self) -> Option<f64> {
+        let ratio = self.cost.b? / self.cost.a?;
+        let ratio = if (ratio - 1.0).abs() < ROUNDING { 1.0 } else { ratio };
+        (self.criterion.a == self.criterion.b).then_some(ratio)
+    }
+}
+
+impl Kinship {
+    /// `reworded` is what differs in words.
+    fn of([a, b]: [&Specification; 2], moves: [&Description; 2], reworded: &[Changed<String>]) -> Kinship {
+        let in_robots = |name: &str| [a, b].into_iter().any(|s| words(&s.robot).iter().any(|word| word.name == name));
+        // What a robot is called makes no difference.
+        let built = reworded.iter().any(|word| word.name != "name" && in_robots(&word.name));
+        if built || parts(&a.robot) != parts(&b.robot) {
+            return Kinship::OtherRobot;
+        }
+        let [a, b] = moves;
+        let members = |d: &Description| {
+            d.legs.clone().map(|leg| leg.members.iter().map(|member| member.name).collect::<BTreeSet<_>>())
+        };
+        let modes = |d: &Description| d.phases.iter().map(|phase| phase.mode).collect::<Vec<_>>();
+        let joints = |d: &Description| d.joints.iter().map(|joint| joint.name).collect::<Vec<_>>();
+        let platform = |d: &Description| (d.rotation, d.unactuated, d.then);
+        let alike =
+            platform(a) == platform(b) && members(a) == members(b) && modes(a) == modes(b) && joints(a) == joints(b);
+        if alike { Kinship::Alike } else { Kinship::OtherGait }
+    }
+}
+
+/// What a file has to say: its links, joints, legs, …
+fn parts(text: &str) -> BTreeSet<String> {
+    let names =
+        numbers(text).into_iter().map(|number| number.name).chain(words(text).into_iter().map(|word| word.name));
+    let part = |name: String| match name.split('.').collect::<Vec<_>>()[..] {
+        [table, part, _, ..] => format!("{table}.{part}"),
+        _ => name,
+    };
+    names.filter(|name| default_of(name).is_none()).map(part).collect()
+}
+
+impl Measures {
+    fn of(gait: &dyn Gait) -> Measures {
+        let d = gait.description();
+        Measures { mass: d.total_mass(), weight: d.weight(), leg_length: d.leg_length() }
+    }
+}
+
+/// Each motion at the other's question, if it has as many variables.
+fn carried(a: Side, b: Side) -> Option<Pair<Carried>> {
+    let (from_a, from_b) = (a.result.theta()?, b.result.theta()?);
+    let fit = from_a.len() == from_b.len() && a.result.durations.len() == b.result.durations.len();
+    fit.then(|| Some(Pair { a: Carried::to(b, &from_a)?, b: Carried::to(a, &from_b)? })).flatten()
+}
+
+impl Carried {
+    fn to(question: Side, theta: &[f64]) -> Option<Carried> {
+        let Side { result, gait } = question;
+        let arrive = |gait: &dyn Gait| {
+            let task = Task { gait, criterion: result.criterion, speed: result.speed };
+            let found = carried_to(&task, theta);
+            let cost = found.as_ref().map(|found| found.costs.of(result.criterion));
+            Carried { cost, is_found: found.is_some_and(|found| same(&found, result)) }
+        };
+        under_its_limits(result, gait, arrive).ok()
     }
 }
 
@@ -176,10 +308,11 @@ fn differing<T: Clone + PartialEq>(
     let only_b = of_b.iter().filter(|(name, _)| value(&of_a, name).is_none());
     let names = of_a.iter().chain(only_b).map(|(name, _)| name);
     let entry = |name: &String| {
-        let values = Pair { a: value(&of_a, name), b: value(&of_b, name) };
+        let written = Pair { a: value(&of_a, name), b: value(&of_b, name) };
+        let given = Pair { a: written.a.is_some(), b: written.b.is_some() };
         let absent = || default_of(name).and_then(&default);
-        let differ = values.a.clone().or_else(absent) != values.b.clone().or_else(absent);
-        differ.then(|| Changed { name: name.clone(), values })
+        let values = Pair { a: written.a.or_else(absent), b: written.b.or_else(absent) };
+        (values.a != values.b).then(|| Changed { name: name.clone(), values, given })
     };
     names.filter_map(entry).collect()
 }
@@ -210,11 +343,7 @@ fn both<'r>(a: &'r GaitResult, b: &'r GaitResult) -> impl Iterator<Item = (&'r S
     of_a.iter().filter_map(move |slope| Some((slope, of_b.iter().find(|other| other.parameter == slope.parameter)?)))
 }
 
-/// Of one criterion: those of two have nothing to do with each other.
 fn slopes(a: &GaitResult, b: &GaitResult) -> Vec<Slope> {
-    if a.criterion != b.criterion {
-        return Vec::new();
-    }
     let some = both(a, b).filter(|(a, b)| a.slope != 0.0 || b.slope != 0.0);
     some.map(|(a, b)| Slope {
         parameter: a.parameter.clone(),
@@ -241,7 +370,7 @@ impl Prediction {
     fn new(a: &GaitResult, b: &GaitResult, changed: Option<&Vec<Changed<f64>>>) -> Option<Prediction> {
         let difference = b.cost? - a.cost?;
         let known = a.sensitivities.is_some() && b.sensitivities.is_some();
-        if a.criterion != b.criterion || !known {
+        if !known {
             return None;
         }
         let (specified, changed) = (changed.is_some(), changed.map_or(&[][..], Vec::as_slice));

@@ -7,7 +7,7 @@ use piaffe_optimizer::result::Status;
 use piaffe_optimizer::search::local::Task;
 use piaffe_optimizer::search::multi_start::Settings;
 use piaffe_sqp::Control;
-use piaffe_study::difference::Difference;
+use piaffe_study::difference::{Difference, Side};
 use piaffe_study::{Answers, Beyond, Column, Designs, Outcome, Row, Search, Study, Vary};
 use std::collections::BTreeSet;
 
@@ -149,22 +149,26 @@ fn differences_follow_from_slopes_in_the_numbers_of_the_file() {
         let gait = heron.with_all(numbers.iter().copied()).unwrap().gait("walk").unwrap();
         let mut result = Task { gait: &gait, criterion: Criterion::Torque, speed: 0.12 }.optimize().unwrap();
         result.examine(&gait, Examination::Quick);
-        result
+        (result, gait)
     };
     let base = result(&[]);
+    let explained = |numbers: &[(&str, f64)]| {
+        let ((a, of_a), (b, of_b)) = (&base, &result(numbers));
+        Difference::new(Side { result: a, gait: of_a }, Side { result: b, gait: of_b }).prediction.unwrap()
+    };
     for (name, value) in [
         ("links.meta.foot_mass", 0.000306),
         ("links.meta.length.y", -0.0152),
         ("joints.hip.damping", 5e-8),
         ("legs.{left,right}.mount.x", 1e-4),
     ] {
-        let difference = Difference::new(&base, &result(&[(name, value)])).prediction.unwrap();
+        let difference = explained(&[(name, value)]);
         assert!(difference.without_slope.is_empty(), "{name}: {:?}", difference.without_slope);
         let parts: Vec<&str> = difference.parts.iter().map(|part| part.parameter.as_str()).collect();
         assert_eq!(parts, [name]);
         let off = (difference.mean - difference.difference).abs();
         assert!(off < 5e-3 * difference.difference.abs(), "{name}: {} {}", difference.mean, difference.difference);
     }
-    let damped = Difference::new(&base, &result(&[("joints.knee.damping", 1e-7)])).prediction.unwrap();
+    let damped = explained(&[("joints.knee.damping", 1e-7)]);
     assert_eq!(damped.without_slope, ["joints.knee.damping"], "the file has none");
 }

@@ -167,8 +167,10 @@ impl Lack {
 fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     match percent.abs() {
-        small if small > 0.0 && small < 1e-3 => format!("{percent:.1e}"),
-        size => format!("{percent:.*}", (1.0 - size.max(1e-9).log10().floor()).clamp(0.0, 4.0) as usize),
+        // What rounding leaves of a zero.
+        nothing if nothing < 1e-9 => "0".into(),
+        small if small < 1e-3 => format!("{percent:.1e}"),
+        size => format!("{percent:.*}", (1.0 - size.log10().floor()).clamp(0.0, 4.0) as usize),
     }
 }
 
@@ -187,6 +189,12 @@ mod tests {
     use super::super::cost::Ways;
     use super::*;
     use piaffe_model::motion::Costs;
+
+    #[test]
+    fn a_share_has_two_digits_and_rounding_none() {
+        let shares = [0.123, 0.00456, 1.2e-7, 1e-15, 0.0];
+        assert_eq!(shares.map(percent), ["12", "0.46", "1.2e-5", "0", "0"]);
+    }
 
     #[test]
     fn what_is_unequal_is_named() {

@@ -22,23 +22,26 @@ fn reaches(gait: &dyn Gait, from: &GaitResult, to: &GaitResult) -> bool {
     STEPS.into_iter().any(|steps| carried(gait, from, to.speed, steps).is_some_and(|found| same(&found, to)))
 }
 
+/// The optimum in which a motion's variables Θ end that are carried to a task at once, if it is one.
+pub fn carried_to(task: &Task, theta: &[f64]) -> Option<Local> {
+    Some(task.carry(theta, &mut |_| Control::Continue)).filter(|local| local.status.is_optimal())
+}
+
 fn carried(gait: &dyn Gait, from: &GaitResult, speed: f64, steps: usize) -> Option<Local> {
     let mut theta = from.theta()?;
     let mut found = None;
     for k in 1..=steps {
         let speed = from.speed + (speed - from.speed) * k as f64 / steps as f64;
         let task = Task { gait, criterion: from.criterion, speed };
-        let local = task.carry(&theta, &mut |_| Control::Continue);
-        if !local.status.is_optimal() {
-            return None;
-        }
+        let local = carried_to(&task, &theta)?;
         theta.clone_from(&local.theta);
         found = Some(local);
     }
     found
 }
 
-fn same(found: &Local, known: &GaitResult) -> bool {
+/// Whether what was found anew is a motion that is known.
+pub fn same(found: &Local, known: &GaitResult) -> bool {
     let near = |a: f64, b: f64, share: f64| (a - b).abs() <= share * a.abs().max(b.abs());
     let mut durations = found.motion.durations().zip(&known.durations);
     known.cost.is_some_and(|cost| near(found.costs.of(known.criterion), cost, COST))
