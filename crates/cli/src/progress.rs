@@ -73,14 +73,15 @@ impl Counted {
         }
     }
 
-    /// How much of it is done, in words.
-    fn words(self, done: u64) -> String {
-        match self {
+    /// How much of it is done, in words; none where it was more than foreseen.
+    fn words(self, done: u64) -> Option<String> {
+        Some(match self {
             Counted::Starts(None) => format!("{done} starts"),
             Counted::Starts(Some(starts)) => format!("{done} of {starts} starts"),
             Counted::Rows(rows) => format!("{done} of {rows}"),
+            Counted::Work(work) if done > work => return None,
             Counted::Work(work) => format!("{} %", (100 * done).checked_div(work).unwrap_or(100)),
-        }
+        })
     }
 }
 
@@ -93,16 +94,17 @@ fn lines(bar: ProgressBar, counted: Counted) -> Sender<()> {
             if bar.is_finished() {
                 return;
             }
-            output::note(&still(bar.elapsed(), &bar.message(), &counted.words(bar.position())));
+            output::note(&still(bar.elapsed(), &bar.message(), counted.words(bar.position())));
             next *= 2;
         }
     });
     lines
 }
 
-fn still(elapsed: Duration, message: &str, done: &str) -> String {
-    let doing = if message.is_empty() { String::new() } else { format!("{message}, ") };
-    format!("still searching after {:#}: {doing}{done}", HumanDuration(elapsed))
+fn still(elapsed: Duration, message: &str, done: Option<String>) -> String {
+    let said: Vec<String> =
+        Some(message.to_string()).filter(|message| !message.is_empty()).into_iter().chain(done).collect();
+    format!("still searching after {:#}: {}", HumanDuration(elapsed), said.join(", "))
 }
 
 #[cfg(test)]
@@ -112,12 +114,13 @@ mod tests {
     #[test]
     fn a_line_says_how_long_what_and_how_much() {
         let line = |seconds, message, counted: Counted, done| {
-            still(Duration::from_secs(seconds), message, &counted.words(done))
+            still(Duration::from_secs(seconds), message, counted.words(done))
         };
         assert_eq!(line(10, "", Counted::Starts(None), 12), "still searching after 10s: 12 starts");
         assert_eq!(line(40, "trot", Counted::Starts(Some(20)), 12), "still searching after 40s: trot, 12 of 20 starts");
         assert_eq!(line(160, "rows", Counted::Rows(900), 30), "still searching after 3m: rows, 30 of 900");
         assert_eq!(line(20, "optima", Counted::Work(4000), 1000), "still searching after 20s: optima, 25 %");
+        assert_eq!(line(20, "speeds", Counted::Work(4000), 4100), "still searching after 20s: speeds");
         assert_eq!(line(20, "optima", Counted::Work(0), 0), "still searching after 20s: optima, 100 %");
     }
 }

@@ -226,7 +226,14 @@ fn words(comparison: &Comparison, ends: &[Greatest]) -> String {
             let [below, above] = told_apart(x.bracket);
             format!("between {below} and {above}")
         };
-        text += &format!("{} overtakes {} {at} m/s; ", x.to, other(&x.to));
+        let jumps = [0, 1].into_iter().filter(|gait| x.jumps(*gait)).map(|gait| {
+            let [below, above] = x.costs.map(|costs| decimal(costs[gait], 2));
+            format!(
+                ", where the {} jumps from {below} to {above}: no optimum was followed across",
+                comparison.gaits[gait]
+            )
+        });
+        text += &format!("{} overtakes {} {at} m/s{}; ", x.to, other(&x.to), jumps.collect::<String>());
         cheaper.clone_from(&x.to);
     }
     let until = match ends.iter().find(|end| end.speed == last) {

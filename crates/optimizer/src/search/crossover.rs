@@ -40,6 +40,20 @@ pub struct Crossover {
     pub costs: [[f64; 2]; 2],
 }
 
+impl Crossover {
+    /// Whether gait 0 or 1 has another optimum above than below: its cost changes by more than from one speed to the other it could.
+    pub fn jumps(&self, gait: usize) -> bool {
+        let [below, above] = self.costs.map(|costs| costs[gait]);
+        let [slow, fast] = self.bracket;
+        (above / below - 1.0).abs() > STEEPEST * (fast / slow - 1.0).abs() + JUMP
+    }
+}
+
+/// A cost changes by no more than so many percent with a percent of speed.
+const STEEPEST: f64 = 20.0;
+/// A share of the cost that is not to be mistaken for the solver's accuracy.
+const JUMP: f64 = 1e-3;
+
 /// Both gaits at one speed.
 #[derive(Clone)]
 struct Pair {
@@ -177,4 +191,20 @@ fn bisect(
         }
     }
     [below, above]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Crossover;
+
+    #[test]
+    fn a_cost_that_changes_more_than_a_speed_explains_has_jumped() {
+        let at = |bracket, costs| Crossover { bracket, to: "run".into(), costs };
+        // From one speed to the next of a grid both rise; across a bisected bracket neither changes.
+        let grid = at([1.0, 1.1], [[240.0, 260.0], [290.0, 280.0]]);
+        let bisected = at([1.05518, 1.05530], [[255.37, 255.38], [255.41, 255.40]]);
+        let jumped = at([1.05518, 1.05530], [[255.37, 300.0], [4911.7, 300.01]]);
+        let steps = |x: &Crossover| [0, 1].map(|gait| x.jumps(gait));
+        assert_eq!([steps(&grid), steps(&bisected), steps(&jumped)], [[false; 2], [false; 2], [true, false]]);
+    }
 }
