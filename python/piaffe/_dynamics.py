@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Callable, Optional, Sequence, Tuple
 
+from ._given import whole
 from ._piaffe import Error, Gait, Kernels
 
 if TYPE_CHECKING:
@@ -91,6 +92,7 @@ class Dynamics:
 
     def foot(self, leg: int, x: ArrayLike) -> Numbers:
         """The foot of virtual leg 1 or 2: (..., positions), m."""
+        leg = whole("leg", leg, most=2)
 
         def kernel(x: bytes) -> list[bytes]:
             return self._kernels.foot(leg, x)
@@ -99,6 +101,7 @@ class Dynamics:
 
     def foot_jacobian(self, leg: int, q: ArrayLike) -> Numbers:
         """D: (..., n, positions). The foot's velocity is Dᵀ Ẋ, and a force F on it acts on X as D F."""
+        leg = whole("leg", leg, most=2)
 
         def kernel(q: bytes) -> list[bytes]:
             return self._kernels.foot_jacobian(leg, q)
@@ -107,6 +110,7 @@ class Dynamics:
 
     def inverse(self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *, stance: Optional[int] = 1) -> InverseDynamics:
         """What accelerates the prescribed coordinates by `qdd` (..., prescribed) while virtual leg `stance` (1 or 2) stands, or none."""
+        stance = whole("stance", stance, most=2)
 
         def kernel(q: bytes, qd: bytes, qdd: bytes) -> list[bytes]:
             return self._kernels.inverse(stance, q, qd, qdd)
@@ -118,6 +122,7 @@ class Dynamics:
         self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *, stance: Optional[int] = 1
     ) -> InverseJacobian:
         """Its derivatives, at the same arguments."""
+        stance = whole("stance", stance, most=2)
 
         def kernel(q: bytes, qd: bytes, qdd: bytes) -> list[bytes]:
             return self._kernels.inverse_jacobian(stance, q, qd, qdd)

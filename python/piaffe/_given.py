@@ -38,7 +38,7 @@ def is_number(value: Any) -> bool:
     """Whether it is a finite number, of whatever library."""
     try:
         return not isinstance(value, (str, bool)) and abs(float(value)) < float("inf")
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         return False
 
 

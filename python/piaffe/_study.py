@@ -73,7 +73,7 @@ def study(
         raise TypeError(f"`robot` is {robot!r}: give a piaffe.Robot, such as piaffe.robots[\"quadruped\"]")
     starts, seed = whole("starts", starts, most=MOST_STARTS), whole("seed", seed, least=0, most=SEEDS)
     chunk, in_flight, retries = seconds("chunk", chunk), whole("in_flight", in_flight), whole("retries", retries, least=0)
-    gaits, criteria, extras = _gaits(robot, gait), _list(criterion), _list(also)
+    gaits, criteria, extras = _gaits(robot, gait), _list("criterion", criterion), _list("also", also)
     names, rows = _designs(robot, designs, gaits)
     if executor is not None and not callable(executor) and not callable(getattr(executor, "submit", None)):
         expected = "give one with `submit(function, *arguments)`, a function that makes one, or none for all cores of this machine"
@@ -86,11 +86,14 @@ def study(
 def _gaits(robot: Robot, given: Union[str, Iterable[str], None]) -> List[str]:
     if given is None:
         return robot.usual_gaits
-    return robot.gaits if given == "all" else _list(given)
+    return robot.gaits if isinstance(given, str) and given == "all" else _list("gait", given)
 
 
-def _list(given: Union[str, Iterable[str]]) -> List[str]:
-    return [given] if isinstance(given, str) else list(given)
+def _list(name: str, given: Union[str, Iterable[str]]) -> List[str]:
+    names = [given] if isinstance(given, str) or not isinstance(given, Iterable) else list(given)
+    if any(not isinstance(one, str) for one in names):
+        raise TypeError(f"`{name}` is {given!r}: give a name or a list of names")
+    return names
 
 
 def _column(name: str, given: Any) -> List[Any]:
@@ -120,6 +123,8 @@ def _designs(robot: Robot, designs: Any, gaits: Sequence[str]) -> Tuple[List[str
         if len(set(lengths.values())) > 1:
             raise Error(f"the columns of the designs have different lengths: {lengths}")
         table = [dict(zip(columns, numbers)) for numbers in zip(*columns.values())]
+    elif isinstance(designs, str) or not isinstance(designs, Iterable):
+        raise TypeError(f"`designs` is {designs!r}: give mappings of numbers by their names, or a table of them")
     else:
         table = [_design(k, design) for k, design in enumerate(designs)]
     names = list(dict.fromkeys(name for design in table for name in design))

@@ -104,5 +104,8 @@ def test_arrays_of_other_shapes(trot: piaffe.Gait) -> None:
         dynamics.bias([[0.0] * 4] * 2, [[0.0] * 4] * 3)
     with pytest.raises(piaffe.Error, match="the trot has no flight"):
         dynamics.inverse([0.0] * 4, [0.0] * 4, [0.0] * 3, stance=None)
-    with pytest.raises(piaffe.Error, match="`leg` is 3"):
-        dynamics.foot(3, [0.0] * 6)
+    for leg, bound in ((3, "most 2"), (-1, "least 1"), (2**70, "most 2")):
+        with pytest.raises(piaffe.Error, match=f"`leg` is {leg}: give at {bound}"):
+            dynamics.foot(leg, [0.0] * 6)
+        with pytest.raises(piaffe.Error, match=f"`stance` is {leg}: give at {bound}"):
+            dynamics.inverse([0.0] * 4, [0.0] * 4, [0.0] * 3, stance=leg)

@@ -290,7 +290,9 @@ def test_what_cannot_be_asked_is_told_before_anything_is_computed(quadruped: pia
     of_another_kind: list[tuple[dict[str, Any], str]] = [
         ({"retries": "x"}, "`retries` is 'x': give a whole number"),
         ({"chunk": 5}, "`chunk` is 5: give the shortest and the longest"),
+        ({"designs": 5}, "`designs` is 5: give mappings"),
         ({"designs": [5]}, "design 0 is 5: give a mapping"),
+        ({"gait": quadruped.gait("trot")}, "`gait` is .*: give a name"),
         ({"designs": {"gravity": 9.81}}, "`gravity` is 9.81: give a list"),
     ]
     for options, said in of_another_kind:

@@ -281,7 +281,7 @@ enum Command {
     /// Set two results side by side: numbers that differ, costs, limits, and how much of the difference the numbers explain.
     ///
     /// What both state is derived anew first. The slopes of the least cost, times the changes of the numbers, predict the cost's
-    /// difference to first order.
+    /// difference to first order. Each motion is carried over to the other's question, which tells one optimum that moved from two.
     #[command(
         after_help = "Examples:\n  piaffe diff light.json heavy.json\n  piaffe diff trot.json amble.json --json -"
     )]

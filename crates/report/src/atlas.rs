@@ -162,11 +162,12 @@ impl Atlas {
         Axis::new("speed", "m/s").over([0.0, 1.04 * all.fold(0.0, f64::max)])
     }
 
-    /// Where the cheaper of two gaits changes, for one criterion.
+    /// Where the cheaper of two gaits of a robot changes, for one criterion.
     pub fn crossings(&self, criterion: Criterion) -> Vec<Crossing> {
         let lines: Vec<&Line> = self.of(criterion).collect();
         let pairs = lines.iter().enumerate().flat_map(|(k, a)| lines[k + 1..].iter().map(move |b| [*a, *b]));
-        let mut all: Vec<Crossing> = pairs.flat_map(crossings).collect();
+        // What a heavy robot spends says nothing of a light one's gaits.
+        let mut all: Vec<Crossing> = pairs.filter(|[a, b]| a.robot() == b.robot()).flat_map(crossings).collect();
         all.sort_by(|a, b| a.bracket[0].total_cmp(&b.bracket[0]));
         all
     }
@@ -190,13 +191,19 @@ impl Atlas {
                 active.push(name.into());
             }
         }
-        let is_greatest = self.extremes.maximum_speeds.iter().any(|m| m.gait == gait && m.speed == speed);
+        let told = |m: &Greatest| m.speed == speed && optima().any(|(_, o)| o.result.gait == m.gait);
+        let is_greatest = self.extremes.maximum_speeds.iter().any(told);
         Some(Fastest { gait, speed, active, is_greatest })
     }
 
     /// Greatest speeds of which a sweep tells, but no result here.
     pub fn unfounded(&self) -> Vec<&Greatest> {
-        let founded = |m: &Greatest| self.fastest_of(&m.gait).is_some_and(|fastest| fastest.speed == m.speed);
+        // A line may be called by more than its gait: by its robot, by where its limits hold.
+        let is_of = |line: &Line, m: &Greatest| line.optima().any(|(_, o)| o.result.gait == m.gait);
+        let founded = |m: &Greatest| {
+            let mut own = self.lines.iter().filter(|line| is_of(line, m));
+            own.any(|line| self.fastest_of(&line.gait).is_some_and(|fastest| fastest.speed == m.speed))
+        };
         self.extremes.maximum_speeds.iter().filter(|m| !founded(m)).collect()
     }
 
@@ -351,6 +358,10 @@ impl Line {
         Line { gait, criterion, points: records.iter().map(point).collect(), connected }
     }
 
+    fn robot(&self) -> Option<&str> {
+        self.optima().next().map(|(_, optimum)| optimum.result.robot.as_str())
+    }
+
     fn optima(&self) -> impl Iterator<Item = (f64, &Optimum)> {
         self.points.iter().filter_map(|p| Some((p.speed, p.optimum.as_ref()?)))
     }
@@ -486,6 +497,25 @@ mod tests {
         assert_eq!(found.place(), "between 0.200 and 0.800 m/s");
         let near = Crossing { bracket: [speed - 1e-5, speed + 1e-5], ..found };
         assert_eq!(near.place(), "at 0.4667 m/s");
+    }
+
+    /// On a page of several robots lines have more in their names than their gaits.
+    #[test]
+    fn lines_of_several_robots_keep_to_their_own() {
+        let of_robot = |robot: &str, points: &[[f64; 2]]| {
+            let mut line = line("trot", points, &[]);
+            for optimum in line.points.iter_mut().filter_map(|point| point.optimum.as_mut()) {
+                optimum.result.robot = robot.into();
+            }
+            Line { gait: format!("trot, {robot}"), ..line }
+        };
+        let lines = vec![of_robot("light", &[[0.2, 1.0], [0.8, 9.0]]), of_robot("heavy", &[[0.2, 5.0], [0.8, 6.0]])];
+        let gaits = lines.iter().map(|line| line.gait.clone()).collect();
+        let told = |speed: f64| Greatest { gait: "trot".into(), speed, ended_by: Vec::new() };
+        let atlas = Atlas { lines, gaits, extremes: Extremes { maximum_speeds: vec![told(0.8), told(0.9)] } };
+        assert!(atlas.crossings(Criterion::Energy).is_empty(), "a robot overtakes another");
+        assert!(atlas.fastest().iter().all(|fastest| fastest.is_greatest));
+        assert_eq!(atlas.unfounded(), [&told(0.9)]);
     }
 
     #[test]
