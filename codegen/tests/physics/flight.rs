@@ -194,12 +194,7 @@ pub fn landing(d: &Derived, s: &State, leg: usize) {
     }
     let touchdown = d.run(&name("touchdown"), &[&s.q, &s.qd]);
     let found = landed(d, s, leg, &with_foot_at_rest(d, other_leg(leg), s));
-    assert_close(
-        "touchdown",
-        found.get("qd_plus"),
-        touchdown.get("qd_plus"),
-        1e-10,
-    );
+    assert_close("touchdown", found.get("qd_plus"), touchdown.get("qd_plus"), 1e-10);
 }
 
 /// The kernel `landing` with the robot's velocities.

@@ -1,7 +1,9 @@
 //! Laws of single support: the reduced model (eq. 6), angular momentum (eq. 8, 9), inverse and forward dynamics.
 
 use super::common::Derived;
-use super::numbers::{along, assert_close, assert_within, difference, dot, is_positive_definite, product, transposed_product};
+use super::numbers::{
+    along, assert_close, assert_within, difference, dot, is_positive_definite, product, transposed_product,
+};
 use super::state::State;
 use piaffe_codegen::mechanism::Mechanism;
 use piaffe_codegen::spec::Rotation;
