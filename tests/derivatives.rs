@@ -171,7 +171,7 @@ fn folds_are_parts_of_the_criterion() {
         let mut values = Values::zeros(cycle.equalities(), cycle.inequalities());
         let theta = loop {
             let theta = theta(&walk(gait, &Plan::random(gait, &mut rng), 0.6));
-            let theta = off_turns(gait, theta, &cycle.scale(), &mut rng);
+            let theta = off_turns(theta, &cycle.scale(), &mut rng);
             if cycle.evaluate(&theta, &mut values).is_ok() {
                 break theta;
             }
