@@ -107,7 +107,7 @@ fn slopes_in_limits_and_speed_are_those_of_optima_of_changed_problems() {
         let name = format!("{} {criterion:?}", gait.description().key);
         let best = local.costs.of(criterion);
         // Rows between the nodes settle to 1e-8 of the criterion, which the step must exceed.
-        let (step, tolerance) = if gait.description().key.starts_with("a1/") { (1e-4, 1e-2) } else { (1e-4, 1e-4) };
+        let (step, tolerance) = (1e-4, 1e-4);
         let check = |of: &str, slope: f64, differences: f64, value: f64| {
             let (slope, differences) = (slope * value / best, differences * value / best);
             let most = tolerance * (1.0 + slope.abs());

@@ -1,7 +1,7 @@
 //! What is asked for beside a robot's files, for one run: other numbers, other limits, stronger motors, a load. It is written into
 //! the files, so that what comes of them says it.
 
-use crate::config::clash;
+use crate::files::clash;
 use crate::spec;
 use crate::{RobotFiles, SpecFile};
 use std::collections::BTreeSet;

@@ -7,12 +7,16 @@
 //! environment and prints.
 
 #![forbid(unsafe_code)]
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 
 mod changes;
 mod config;
 pub mod dynamics;
 pub mod emit;
 pub mod expr;
+mod files;
+mod generate;
+pub mod math;
 pub mod mechanism;
 pub mod program;
 #[path = "../support/sources.rs"]
@@ -22,7 +26,9 @@ mod turns;
 pub mod typeset;
 
 pub use changes::{Changes, Load};
-pub use config::{Config, Generated, RobotFiles, SpecFile, Specified, check, generate, generate_families, specified};
+pub use config::Config;
+pub use files::{RobotFiles, SpecFile};
+pub use generate::{Generated, Specified, check, generate, generate_families, specified};
 
 /// Tells this derivation from that of any other version: a hash of its sources.
 pub const SOURCES: &str = env!("SOURCES");

@@ -297,12 +297,8 @@ fn names_are_those_by_which_numbers_are_set() {
             if lever.value == 0.0 && lever.numbers.len() > 1 {
                 continue; // On either side to its own.
             }
-            // What is none is changed by little beside a small robot; stops and forces by little beside 1.
-            let step = match lever.unit {
-                "m" | "kg" => 1e-6,
-                "kg·m²" => 1e-11,
-                _ => 1e-6,
-            };
+            // What is none is changed by little, a rotor by little beside a small one.
+            let step = if lever.unit == "kg·m²" { 1e-11 } else { 1e-6 };
             let by = if lever.value == 0.0 { step } else { 1e-5 * lever.value };
             let moved = |by: f64| {
                 let mut changed = files.clone();

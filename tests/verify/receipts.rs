@@ -3,6 +3,7 @@
 use crate::motions::{Random, closed_trot, gaits, stepping};
 use piaffe::gaits::{curvet::Curvet, trot::Trot};
 use piaffe::model::{Description, Gait};
+use piaffe::verify::constraint::{Constraint, Tally};
 use piaffe::verify::{Finding, Receipt, VerifyError, sample, verify};
 
 const GRID: usize = 2001;
@@ -18,6 +19,23 @@ fn found<'r>(receipt: &'r Receipt, name: &str) -> &'r Finding {
         .iter()
         .find(|f| f.constraint == name)
         .unwrap_or_else(|| panic!("`{name}` is not among {:?}", names(receipt)))
+}
+
+/// Of every constraint its own margin is told, and none is forgotten that the gait was not known to have.
+#[test]
+fn every_constraint_has_a_margin_of_its_own() {
+    for gait in gaits() {
+        let d = gait.description();
+        let unknown = [Constraint::Torque(d.joints()), Constraint::Height(d.points.len())];
+        let all: Vec<Constraint> = Constraint::all(d).chain(unknown).collect();
+        let mut tally = Tally::new(d, 1);
+        let margin = |k: usize| 1.0 - 2.0 * k as f64;
+        all.iter().enumerate().for_each(|(k, constraint)| tally.note(*constraint, margin(k), 0.0));
+        for (k, constraint) in all.iter().enumerate() {
+            assert_eq!(tally.margin(*constraint), margin(k), "{}: {constraint:?}", d.key);
+        }
+        assert_eq!(tally.worst(d).unwrap().margin, margin(all.len() - 1));
+    }
 }
 
 #[test]

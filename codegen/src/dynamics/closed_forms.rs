@@ -24,7 +24,8 @@ pub fn closed_forms(model: &mut Model) -> Vec<Section> {
     let kernels = floating::kernels(model);
     let values = |kernel: &str| -> Vec<Poly> {
         let found = kernels.iter().find(|k: &&Kernel| k.name == kernel);
-        found.and_then(|k| k.outputs.first()).map(|o| o.values.clone()).unwrap_or_default()
+        let output = found.and_then(|k| k.outputs.first()).unwrap_or_else(|| panic!("no kernel `{kernel}` is derived"));
+        output.values.clone()
     };
     let n = model.x(0).len();
     let upper = values("inertia").into_iter().enumerate().filter(|(i, _)| i / n <= i % n);

@@ -54,27 +54,27 @@ pub fn kernels(model: &mut Model) -> Vec<Kernel> {
         let velocity = model.rate(&foot);
         let acceleration = model.rate(&velocity);
         let foot_bias = model.components(&acceleration).iter().map(|a| model.without(a, &xdd)).collect();
-        let name = |what: &str| format!("{what}{}", leg + 1);
         kernels.push(
-            Kernel::new(name("foot"), "Position d of the foot (eq. 2), world axes, m.")
+            Kernel::of_leg(leg, "foot", "Position d of the foot (eq. 2), world axes, m.")
                 .input("x", x.clone())
                 .vector("d", position, "d"),
         );
         kernels.push(
-            Kernel::new(name("foot_jacobian"), "D = (∂d/∂X)ᵀ of eq. 3, one row per coordinate: ḋ = DᵀẊ.")
+            Kernel::of_leg(leg, "foot_jacobian", "D = (∂d/∂X)ᵀ of eq. 3, one row per coordinate: ḋ = DᵀẊ.")
                 .input("q", q.clone())
                 .matrix("d", jacobian, "D"),
         );
         kernels.push(
-            Kernel::new(name("foot_bias"), "Velocity terms of the foot's acceleration (eq. 4): d̈ = DᵀẌ + Hᵢ, m/s².")
+            Kernel::of_leg(leg, "foot_bias", "Velocity terms of the foot's acceleration (eq. 4): d̈ = DᵀẌ + Hᵢ, m/s².")
                 .input("q", q.clone())
                 .input("qd", model.q(1))
                 .vector("h", foot_bias, "Hᵢ"),
         );
         let momentum = angular_momentum(model, leg);
         kernels.push(
-            Kernel::new(
-                name("angular_momentum"),
+            Kernel::of_leg(
+                leg,
+                "angular_momentum",
                 "Angular momentum σ of the whole robot about the foot's position, absolute velocities, kg·m²/s.",
             )
             .input("x", x.clone())

@@ -9,7 +9,6 @@ use super::model::Model;
 use crate::expr::{Poly, Var, Vec3, add, rotate, zero};
 use crate::mechanism::{Mode, Point, points};
 use crate::spec::Rotation;
-use std::f64::consts::{PI, TAU};
 
 /// Kernels of a mode.
 pub fn kernels(model: &mut Model, mode: Mode) -> Vec<Kernel> {
@@ -128,9 +127,30 @@ impl Height {
 
 /// Whether some direction points away from all of these.
 fn leaves_half_plane(away: &[Vec<f64>]) -> bool {
-    let mut angles: Vec<f64> = away.iter().map(|v| v[1].atan2(v[0])).collect();
-    angles.sort_by(f64::total_cmp);
-    let next = angles.iter().skip(1).copied().chain(angles.first().map(|first| first + TAU));
-    let widest = angles.iter().zip(next).map(|(a, b)| b - a).fold(0.0, f64::max);
-    angles.is_empty() || widest > PI + 1e-9
+    // Then all others are to the left of one of them, by less than half a turn.
+    let is_first = |a: &Vec<f64>| {
+        away.iter().all(|b| {
+            let (along, across) = (a[0] * b[0] + a[1] * b[1], a[0] * b[1] - a[1] * b[0]);
+            // Of what rounding makes of it.
+            let size = 1e-9 * (a[0].abs() + a[1].abs()) * (b[0].abs() + b[1].abs());
+            across > size || (across >= -size && along > 0.0)
+        })
+    };
+    away.is_empty() || away.iter().any(is_first)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_half_plane_is_left_where_there_is_room() {
+        let leaves = |away: &[[f64; 2]]| leaves_half_plane(&away.iter().map(|v| v.to_vec()).collect::<Vec<_>>());
+        assert!(leaves(&[]) && leaves(&[[-1.0, 0.0]]) && leaves(&[[1.0, 0.0], [2.0, 0.0], [0.0, 1.0]]));
+        assert!(leaves(&[[-1.0, 0.1], [1.0, 0.1], [0.0, 3.0]]));
+        assert!(leaves(&[[0.0, -1.0], [1e-3, 1.0], [1e3, 0.0]]), "across the cut of an angle");
+        assert!(leaves(&[[-1.0, 1e-3], [-1.0, -1e-3]]), "likewise");
+        assert!(!leaves(&[[1.0, 0.0], [-2.0, 0.0]]), "what is between two is not outside");
+        assert!(!leaves(&[[1.0, 0.0], [-1.0, 1.0], [-1.0, -1.0]]));
+    }
 }

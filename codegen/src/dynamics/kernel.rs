@@ -6,6 +6,9 @@ use crate::mechanism::{Mechanism, Mode, Transition};
 /// A group of expressions evaluated together; becomes one generated function.
 #[derive(Clone, Debug)]
 pub struct Kernel {
+    /// What it computes, whichever mode or leg it is of: trait methods are called like this.
+    pub what: String,
+    /// The same of its mode or leg: the generated function is called like this.
     pub name: String,
     /// What it computes, with equation numbers, units and frame.
     pub doc: String,
@@ -13,6 +16,8 @@ pub struct Kernel {
     pub outputs: Vec<Output>,
     /// Whether it is also wanted for many states at once.
     pub batched: bool,
+    /// Whether its length is of interest though it gives one thing alone.
+    pub measured: bool,
     pub of: Of,
 }
 
@@ -21,6 +26,8 @@ pub struct Kernel {
 pub enum Of {
     /// The robot, whatever stands.
     Robot,
+    /// A leg (0 or 1), whatever stands.
+    Leg(usize),
     Mode(Mode),
     Transition(Transition),
 }
@@ -115,15 +122,27 @@ impl Input {
 }
 
 impl Kernel {
-    pub fn new(name: impl Into<String>, doc: impl Into<String>) -> Kernel {
+    /// One of the whole robot, whatever stands.
+    pub fn new(what: &str, doc: impl Into<String>) -> Kernel {
+        Kernel::named(what, what.into(), Of::Robot, doc)
+    }
+
+    fn named(what: &str, name: String, of: Of, doc: impl Into<String>) -> Kernel {
         Kernel {
-            name: name.into(),
+            what: what.into(),
+            name,
             doc: doc.into(),
             inputs: Vec::new(),
             outputs: Vec::new(),
             batched: false,
-            of: Of::Robot,
+            measured: false,
+            of,
         }
+    }
+
+    /// One of a leg, whatever stands.
+    pub fn of_leg(leg: usize, what: &str, doc: impl Into<String>) -> Kernel {
+        Kernel::named(what, format!("{what}{}", leg + 1), Of::Leg(leg), doc)
     }
 
     /// Pairs of terms in its sums, about: what the time to factor it goes by.
@@ -133,12 +152,12 @@ impl Kernel {
 
     /// One of the kernels of a mode: what it computes is called `what`.
     pub fn of_mode(mode: Mode, what: &str, doc: impl Into<String>) -> Kernel {
-        Kernel { of: Of::Mode(mode), ..Kernel::new(mode.kernel(what), doc) }
+        Kernel::named(what, mode.kernel(what), Of::Mode(mode), doc)
     }
 
     /// One of the kernels of a transition; `what` as in [`Transition::kernel`].
     pub fn of_transition(transition: Transition, what: &str, doc: impl Into<String>) -> Kernel {
-        Kernel { of: Of::Transition(transition), ..Kernel::new(transition.kernel(what), doc) }
+        Kernel::named(&transition.what(what), transition.kernel(what), Of::Transition(transition), doc)
     }
 
     /// The mode that it is of, if it is of one.
@@ -149,21 +168,28 @@ impl Kernel {
     /// Whether a gait with these modes and transitions can need it.
     pub fn serves(&self, mechanism: &Mechanism) -> bool {
         match self.of {
-            Of::Robot => true,
+            Of::Robot | Of::Leg(_) => true,
             Of::Mode(mode) => mechanism.modes.contains(&mode),
             Of::Transition(transition) => mechanism.transitions.contains(&transition),
         }
     }
 
-    /// What it computes, whichever mode or leg it is of: trait methods are called like this.
-    pub fn base(&self) -> &str {
-        let base = self.name.trim_end_matches(|c: char| c.is_ascii_digit());
-        self.mode().and_then(|mode| base.strip_prefix(mode.prefix())).unwrap_or(base)
+    /// The leg (0 or 1) whose twin it is, if there are twins for the legs.
+    pub fn leg(&self) -> Option<usize> {
+        match self.of {
+            Of::Robot | Of::Mode(Mode::Flight) => None,
+            Of::Leg(leg) | Of::Mode(Mode::Stance(leg)) => Some(leg),
+            Of::Transition(transition) => Some(transition.leg()),
+        }
     }
 
-    /// Whether there are twins for the legs.
-    pub fn is_of_leg(&self) -> bool {
-        self.name.ends_with(|c: char| c.is_ascii_digit())
+    /// Whether somebody asks where what it gives or takes stands.
+    pub fn has_shape(&self) -> bool {
+        self.measured || self.outputs.len() > 1 || self.inputs.iter().any(|input| !input.blocks.is_empty())
+    }
+
+    pub fn measured(self) -> Kernel {
+        Kernel { measured: true, ..self }
     }
 
     pub fn batched(self) -> Kernel {

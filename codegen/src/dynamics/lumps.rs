@@ -49,25 +49,22 @@ impl Lumps {
         }
     }
 
-    /// What is evaluated once per robot.
-    pub fn kernels(&self, model: &Model) -> [Kernel; 3] {
-        let numbers = model.quantities.numbers.clone();
-        let jacobian = model.jacobian(&self.values, &model.parameters);
-        let of_parameters = |name: &str, doc: &str| Kernel::new(name, doc).input(PARAMETERS, model.parameters.clone());
-        [
-            of_parameters("numbers", "The numbers of the robot's mechanism, in the order of its description.")
-                .vector("numbers", numbers, "numbers"),
-            of_parameters("lumps", "The lumped parameters of a robot: what the other kernels need of it.").vector(
-                "lumps",
-                self.values.clone(),
-                "lumped parameters",
-            ),
-            of_parameters("lumps_jacobian", "Jacobian of the lumped parameters in the parameters.").matrix(
-                "jacobian",
-                jacobian,
-                "∂lumps/∂parameters",
-            ),
-        ]
+    /// What makes them of the parameters, once per robot.
+    pub fn kernel(&self, model: &Model) -> Kernel {
+        of_parameters(model, "lumps", "The lumped parameters of a robot: what the other kernels need of it.").vector(
+            "lumps",
+            self.values.clone(),
+            "lumped parameters",
+        )
+    }
+
+    /// How they depend on the parameters.
+    pub fn jacobian(&self, model: &Model) -> Kernel {
+        of_parameters(model, "lumps_jacobian", "Jacobian of the lumped parameters in the parameters.").matrix(
+            "jacobian",
+            model.jacobian(&self.values, &model.parameters),
+            "∂lumps/∂parameters",
+        )
     }
 
     /// The symbol of a coefficient, times a number.
@@ -87,4 +84,17 @@ impl Lumps {
         });
         Poly::from(self.symbols[number]).scaled(leading)
     }
+}
+
+/// The mechanism's numbers from the parameters.
+pub fn numbers(model: &Model) -> Kernel {
+    of_parameters(model, "numbers", "The numbers of the robot's mechanism, in the order of its description.").vector(
+        "numbers",
+        model.quantities.numbers.clone(),
+        "numbers",
+    )
+}
+
+fn of_parameters(model: &Model, name: &str, doc: &str) -> Kernel {
+    Kernel::new(name, doc).input(PARAMETERS, model.parameters.clone())
 }

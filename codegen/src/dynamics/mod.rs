@@ -65,36 +65,58 @@ fn derive(model: &mut Model) -> Vec<Kernel> {
     kernels
 }
 
-/// The kernels of a gait of a family of robots.
+/// What is derived of a gait of a family of robots. The kernels of the gait are as those of one robot, but with the lumped
+/// parameters as their first input.
 pub struct FamilyKernels {
-    /// As those of one robot, but with the lumped parameters as their first input.
     pub gait: Vec<Kernel>,
-    /// Gradients in the lumped parameters, which are their first input too.
-    pub sensitivity: Vec<Kernel>,
-    /// From the parameters: the mechanism's numbers, the lumped parameters and their Jacobian.
-    pub parameters: [Kernel; 3],
+    /// From the parameters the lumped ones.
+    pub lumps: Kernel,
 }
 
-/// All kernels of a gait of a family of robots.
+/// What is derived beside it where gradients in the parameters are wanted.
+pub struct Gradients {
+    /// From the parameters the mechanism's numbers.
+    pub numbers: Kernel,
+    /// From the parameters the Jacobian of the lumped ones.
+    pub jacobian: Kernel,
+    /// Gradients in the lumped parameters, which are their first input too.
+    pub sensitivity: Vec<Kernel>,
+}
+
+/// The kernels of a gait of a family of robots.
 pub fn family_kernels(family: &Family) -> (Model, FamilyKernels) {
     let mut model = Model::of_family(family);
     let mut gait = derive(&mut model);
-    let transitions = model.mechanism.transitions.clone();
-    let mut weighted = Vec::new();
-    for mode in model.mechanism.modes.clone() {
-        weighted.extend(sensitivity::of_mode(&mut model, mode));
-        let into = transitions.iter().filter(|t| t.to == mode);
-        weighted.extend(into.map(|t| sensitivity::of_transition(&mut model, *t)));
-    }
-    let mut lumps = Lumps::default();
-    for value in gait.iter_mut().flat_map(|k| &mut k.outputs).flat_map(|o| &mut o.values) {
-        *value = lumps.rewrite(&mut model.ring, value);
-    }
+    let lumps = lumped(&mut model, &mut gait);
+    gait.iter_mut().for_each(|kernel| take(kernel, &lumps));
+    let lumps = lumps.kernel(&model);
+    (model, FamilyKernels { gait, lumps })
+}
+
+/// The same with gradients: there are lumped parameters more, on which these alone depend.
+pub fn family_kernels_with_gradients(family: &Family) -> (Model, FamilyKernels, Gradients) {
+    let mut model = Model::of_family(family);
+    let mut gait = derive(&mut model);
+    let weighted = sensitivity::weighted(&mut model);
+    let mut lumps = lumped(&mut model, &mut gait);
     let weighted: Vec<_> = weighted.into_iter().map(|w| w.lumped(&mut model, &mut lumps)).collect();
     let mut sensitivity: Vec<Kernel> = weighted.into_iter().map(|w| w.gradient(&mut model, &lumps)).collect();
-    for kernel in gait.iter_mut().chain(&mut sensitivity) {
-        kernel.inputs.insert(0, Input::new(LUMPS, lumps.symbols.clone()));
+    gait.iter_mut().chain(&mut sensitivity).for_each(|kernel| take(kernel, &lumps));
+    let gradients = Gradients { numbers: lumps::numbers(&model), jacobian: lumps.jacobian(&model), sensitivity };
+    let lumps = lumps.kernel(&model);
+    (model, FamilyKernels { gait, lumps }, gradients)
+}
+
+/// Rewrites kernels in lumped parameters.
+fn lumped(model: &mut Model, kernels: &mut [Kernel]) -> Lumps {
+    let mut lumps = Lumps::default();
+    for value in kernels.iter_mut().flat_map(|k| &mut k.outputs).flat_map(|o| &mut o.values) {
+        *value = lumps.rewrite(&mut model.ring, value);
     }
-    let parameters = lumps.kernels(&model);
-    (model, FamilyKernels { gait, sensitivity, parameters })
+    lumps
+}
+
+/// Gives a kernel the lumped parameters.
+fn take(kernel: &mut Kernel, lumps: &Lumps) {
+    kernel.inputs.insert(0, Input::new(LUMPS, lumps.symbols.clone()));
 }

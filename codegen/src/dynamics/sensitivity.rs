@@ -21,10 +21,16 @@ pub struct Weighted {
     held: BTreeMap<Var, Poly>,
 }
 
-/// The weighted sums of a mode.
-pub fn of_mode(model: &mut Model, mode: Mode) -> [Weighted; 2] {
-    let turn = Turn::new(model, mode);
-    [instant(model, mode, &turn), terms(model, mode, &turn)]
+/// The weighted sums of all modes and transitions.
+pub fn weighted(model: &mut Model) -> Vec<Weighted> {
+    let mut all = Vec::new();
+    for mode in model.mechanism.modes.clone() {
+        let turn = Turn::new(model, mode);
+        all.extend([instant(model, mode, &turn), terms(model, mode, &turn)]);
+        let into: Vec<Transition> = model.mechanism.transitions.iter().filter(|t| t.to == mode).copied().collect();
+        all.extend(into.into_iter().map(|transition| of_transition(model, transition)));
+    }
+    all
 }
 
 impl Weighted {
@@ -83,7 +89,7 @@ fn terms(model: &mut Model, mode: Mode, turn: &Turn) -> Weighted {
 }
 
 /// The weighted sum of what a transition does.
-pub fn of_transition(model: &mut Model, transition: Transition) -> Weighted {
+fn of_transition(model: &mut Model, transition: Transition) -> Weighted {
     let results = Results::new(model, transition);
     let kernel = Kernel::of_transition(
         transition,

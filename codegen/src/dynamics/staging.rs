@@ -77,7 +77,8 @@ pub fn kernels(model: &mut Model, mode: Mode, turn: &Turn) -> Vec<Kernel> {
         )
         .input("actuated", prescribed)
         .input("actuated_d", rates)
-        .vector("early", early.values.clone(), "early values"),
+        .vector("early", early.values.clone(), "early values")
+        .measured(),
         Kernel::of_mode(mode, "late", "f1, f2 (eq. 8) and σ̇ (eq. 9) with their derivatives in β.")
             .input("early", early.symbols.clone())
             .scalar_input("beta", beta)

@@ -121,8 +121,9 @@ pub fn impact(model: &mut Model, leg: usize) -> Kernel {
     let (map, xd) = with_platform(model, leg, &solution);
     let before = linear_momentum(model, &platform);
     let impulse = impulse(model, leg, &before, &map);
-    Kernel::new(
-        format!("impact{}", leg + 1),
+    Kernel::of_leg(
+        leg,
+        "impact",
         "Passive impact on this foot, the other one free (eq. 12): velocities after, and the impulse.",
     )
     .input("q", model.q(0))

@@ -6,7 +6,7 @@ use super::function::{Function, functions};
 use super::methods::methods;
 use super::modules::{Place, file_name, key, places, tree};
 use super::tokens::{Written, doc, float, ident, path, print, whole};
-use crate::dynamics::{family_kernels, lowest};
+use crate::dynamics::{family_kernels_with_gradients, lowest};
 use crate::mechanism::{Family, Parameter, Sign};
 use crate::program::Search;
 use crate::spec::name::{FAMILIES_FOLDER, type_name};
@@ -19,13 +19,13 @@ use syn::Path;
 /// # Errors
 /// If a name or a number of it cannot be one in Rust.
 pub fn family_source(family: &Family, robot: &str, latex: &str, runtime: &str, origin: &str) -> Written<String> {
-    let (mut model, kernels) = family_kernels(family);
+    let (mut model, kernels, gradients) = family_kernels_with_gradients(family);
     let lowest = lowest(&mut model);
     let gait = functions(&model.ring, &kernels.gait)?;
-    let sensitivity = functions(&model.ring, &kernels.sensitivity)?;
+    let sensitivity = functions(&model.ring, &gradients.sensitivity)?;
     let mut search = Search::default();
-    let [numbers, lumps, jacobian] =
-        kernels.parameters.each_ref().map(|kernel| Function::new(&model.ring, kernel, &mut search));
+    let [numbers, lumps, jacobian] = [&gradients.numbers, &kernels.lumps, &gradients.jacobian]
+        .map(|kernel| Function::new(&model.ring, kernel, &mut search));
     let (numbers, lumps, jacobian) = (numbers?, lumps?, jacobian?);
     let mut source = header(origin)? + &items(&gait)? + &items(&sensitivity)?;
     [&numbers, &lumps, &jacobian].into_iter().for_each(|f| source += &f.source);

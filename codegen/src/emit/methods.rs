@@ -40,9 +40,9 @@ pub fn asking<'f>(
 fn by_base<'f>(functions: impl IntoIterator<Item = &'f Function<'f>>) -> Vec<(&'f str, Vec<&'f Kernel>)> {
     let mut kernels: Vec<(&str, Vec<&Kernel>)> = Vec::new();
     for kernel in functions.into_iter().map(|function| function.kernel) {
-        match kernels.iter_mut().find(|(base, _)| *base == kernel.base()) {
+        match kernels.iter_mut().find(|(base, _)| *base == kernel.what) {
             Some((_, twins)) => twins.push(kernel),
-            None => kernels.push((kernel.base(), vec![kernel])),
+            None => kernels.push((&kernel.what, vec![kernel])),
         }
     }
     kernels
@@ -50,10 +50,10 @@ fn by_base<'f>(functions: impl IntoIterator<Item = &'f Function<'f>>) -> Vec<(&'
 
 /// The argument that tells twins apart.
 fn which(kernel: &Kernel) -> Option<TokenStream> {
-    match (kernel.mode(), kernel.is_of_leg()) {
+    match (kernel.mode(), kernel.leg()) {
         (Some(_), _) => Some(quote!(mode)),
-        (None, true) => Some(quote!(leg)),
-        (None, false) => None,
+        (None, Some(_)) => Some(quote!(leg)),
+        (None, None) => None,
     }
 }
 
@@ -96,7 +96,7 @@ fn arm(kernel: &Kernel, runtime: &Path) -> TokenStream {
             quote!(#runtime::Mode::Stance(#leg))
         }
         None => {
-            let leg = whole(usize::from(!kernel.name.ends_with('1')));
+            let leg = whole(kernel.leg().unwrap_or_default());
             quote!(#leg)
         }
     }

@@ -28,17 +28,13 @@ pub fn shapes(functions: &[&Function], all: &TokenStream, runtime: &Path) -> Wri
     Ok(quote!(#all { #of_mode #others ..#all::NONE }))
 }
 
-/// Of one thing, but its length is of interest.
-const EARLY: &str = "early";
-
 fn fields<'k>(kernels: impl Iterator<Item = &'k Kernel>, runtime: &Path) -> Written<TokenStream> {
     let mut by_base: BTreeMap<&str, &Kernel> = BTreeMap::new();
     let mut order = Vec::new();
     let length = |k: &Kernel| k.outputs.iter().map(|output| output.values.len()).sum::<usize>();
-    let several = |k: &&Kernel| k.outputs.len() > 1 || k.inputs.iter().any(|input| !input.blocks.is_empty());
-    for kernel in kernels.filter(|k| several(k) || k.base() == EARLY) {
-        let known = by_base.entry(kernel.base()).or_insert_with(|| {
-            order.push(kernel.base());
+    for kernel in kernels.filter(|k| k.has_shape()) {
+        let known = by_base.entry(&kernel.what).or_insert_with(|| {
+            order.push(kernel.what.as_str());
             kernel
         });
         if length(kernel) > length(known) {

@@ -188,11 +188,6 @@ impl Poly {
         Poly { terms: self.terms.iter().map(|(m, c)| (Monomial::from_slice(m), c * factor)).collect() }
     }
 
-    /// The terms for which `keep` holds of their monomial.
-    pub fn filtered(&self, keep: impl Fn(&Monomial) -> bool) -> Poly {
-        Poly { terms: self.terms.iter().filter(|(m, _)| keep(m)).cloned().collect() }
-    }
-
     /// Equal but for rounding of the coefficients.
     pub fn is_close_to(&self, other: &Poly) -> bool {
         let close = |c: f64, d: f64| (c - d).abs() <= 1e-13 * c.abs();

@@ -5,6 +5,7 @@
 
 use super::laws::OF_SUMS_OF_ANGLES;
 use super::poly::{Monomial, Poly, Terms, Var, times};
+use crate::math::sin_cos;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Mutex;
@@ -363,9 +364,9 @@ impl Ring {
             self.angles[a].iter().map(|v| self.atom_value(*v, known)).sum()
         };
         let value = if atom.is_sin() {
-            angle(atom.index(), known).sin()
+            sin_cos(angle(atom.index(), known)).0
         } else if atom.is_cos() {
-            angle(atom.index(), known).cos()
+            sin_cos(angle(atom.index(), known)).1
         } else {
             match &self.plain[atom.index()] {
                 Kind::Bound(definition) => self.value(definition, known),

@@ -36,13 +36,8 @@ impl Mode {
     pub fn kernel(self, what: &str) -> String {
         match self {
             Mode::Stance(leg) => format!("{what}{}", leg + 1),
-            Mode::Flight => format!("{}{what}", self.prefix()),
+            Mode::Flight => format!("flight_{what}"),
         }
-    }
-
-    /// How the names of its kernels begin.
-    pub fn prefix(self) -> &'static str {
-        self.say("", "flight_")
     }
 
     /// What is said in stance, or what is said in flight.

@@ -27,14 +27,24 @@ impl Transition {
         }
     }
 
-    /// What a kernel of this transition is called, after what it is for, if that has a name.
-    pub fn kernel(self, what: &str) -> String {
-        let (name, leg) = match (self.leaves(), self.lands()) {
-            (Some(_), Some(leg)) => ("touchdown", leg),
-            (None, Some(leg)) => ("landing", leg),
-            (leg, None) => ("takeoff", leg.unwrap_or_default()),
+    /// The leg that it is of: the one that lands, or leaves into flight.
+    pub fn leg(self) -> usize {
+        self.lands().or(self.leaves()).unwrap_or_default()
+    }
+
+    /// What a kernel computes of such transitions; `what` is what it is for, if that has a name.
+    pub fn what(self, what: &str) -> String {
+        let name = match (self.leaves(), self.lands()) {
+            (Some(_), Some(_)) => "touchdown",
+            (None, Some(_)) => "landing",
+            (_, None) => "takeoff",
         };
-        format!("{name}{what}{}", leg + 1)
+        format!("{name}{what}")
+    }
+
+    /// What a kernel of this transition is called.
+    pub fn kernel(self, what: &str) -> String {
+        format!("{}{}", self.what(what), self.leg() + 1)
     }
 }
 

@@ -5,7 +5,6 @@ mod factor;
 mod group;
 mod lower;
 mod market;
-pub mod math;
 mod steps;
 
 pub use factor::Search;
@@ -13,6 +12,7 @@ pub use steps::{Sine, Step, terms};
 
 use crate::dynamics::Kernel;
 use crate::expr::Ring;
+use crate::math::sin_cos;
 use crate::turns::in_turn;
 use group::Groups;
 use smallvec::SmallVec;
@@ -227,8 +227,8 @@ impl Program {
         for id in self.schedule() {
             let value = match self.nodes[id as usize] {
                 Node::Input(i, k) => inputs[i][k],
-                Node::Sin(s) => sum(&values, s).sin(),
-                Node::Cos(s) => sum(&values, s).cos(),
+                Node::Sin(s) => sin_cos(sum(&values, s)).0,
+                Node::Cos(s) => sin_cos(sum(&values, s)).1,
                 Node::Value(s) => sum(&values, s),
                 Node::Reciprocal(s) => 1.0 / sum(&values, s),
             };

@@ -23,13 +23,14 @@ impl View<'_> {
         }
     }
 
-    /// One of the key's words, as its index among them.
-    pub fn choice(&self, name: &str, sink: &mut Sink) -> Option<At<usize>> {
+    /// What one of the key's words stands for; `meant` has as many things as the key has words, in their order.
+    pub fn choice<T: Copy, const N: usize>(&self, name: &str, meant: [T; N], sink: &mut Sink) -> Option<At<T>> {
         let field = self.field(name)?;
         let (Kind::Choice(words), DeValue::String(text)) = (&field.key.kind, field.value) else {
             return field.wrong_type(sink);
         };
-        field.word(text, words, &field.span, sink)
+        assert_eq!(words.len(), N, "what `{name}` may be");
+        field.word(text, words, &field.span, sink).map(|word| At { value: meant[word.value], span: word.span })
     }
 
     /// A list of the key's words, each as its index among them.

@@ -61,10 +61,9 @@ fn read(path: &str, text: &str, robot: Option<&RobotFile>, sink: &mut Sink) -> O
     let raw = RawGait {
         virtual_legs: root.name_lists("virtual_legs", sink),
         moves: platform.as_ref().and_then(|p| p.choices("moves", sink)),
-        rotation: platform.as_ref().and_then(|p| p.choice("rotates", sink)).map(|word| At {
-            value: [Rotation::None, Rotation::Pitch, Rotation::Roll][word.value.min(2)],
-            span: word.span,
-        }),
+        rotation: platform
+            .as_ref()
+            .and_then(|p| p.choice("rotates", [Rotation::None, Rotation::Pitch, Rotation::Roll], sink)),
         unactuated: coordinates::single(&root, sink),
         phases,
         then,

@@ -29,15 +29,15 @@ struct Stance([bool; 2]);
 
 /// What a file says of its phases, and of what follows them.
 pub(super) fn read(root: &View<'_>, limits: Option<&View<'_>>, sink: &mut Sink) -> (Written, Option<At<Then>>) {
-    let then = |word: At<usize>| At { value: [Then::Mirrored, Then::Repeat][word.value.min(1)], span: word.span };
+    let then = [Then::Mirrored, Then::Repeat];
     if root.is_short() {
         let duration = limits.and_then(|limits| limits.pair("half_step_duration", sink));
-        return (Written::HalfSteps(duration.map(|d| d.value)), root.choice("half_steps", sink).map(then));
+        return (Written::HalfSteps(duration.map(|d| d.value)), root.choice("half_steps", then, sink));
     }
     let list =
         root.tables("phases", sink).map(|tables| tables.iter().map(|table| listed(table.as_ref(), sink)).collect());
     let cycle = root.table("cycle", sink);
-    (Written::List(list), cycle.and_then(|cycle| cycle.choice("then", sink)).map(then))
+    (Written::List(list), cycle.and_then(|cycle| cycle.choice("then", then, sink)))
 }
 
 fn listed(table: Option<&View<'_>>, sink: &mut Sink) -> Listed {

@@ -1,6 +1,7 @@
 //! Rigid bodies put together: masses add, and moments of inertia by the parallel axis theorem.
 
 use super::types::{Axis, Inertia};
+use crate::math::sin_cos;
 
 pub(super) type Rotation3 = [[f64; 3]; 3];
 
@@ -71,7 +72,7 @@ impl Rigid {
 
 /// The turn by `angle` about a coordinate axis.
 pub(super) fn turn(axis: Axis, angle: f64) -> Rotation3 {
-    let (sin, cos) = angle.sin_cos();
+    let (sin, cos) = sin_cos(angle);
     let i = axis.index();
     let (j, k) = ((i + 1) % 3, (i + 2) % 3);
     let mut turn = IDENTITY;

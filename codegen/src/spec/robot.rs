@@ -151,13 +151,8 @@ impl RawJoint {
         let Some(view) = view else { return joint };
         joint.parent = view.text("parent", sink);
         joint.child = view.text("child", sink);
-        if let Some(word) = view.choice("axis", sink) {
-            let value = match word.value {
-                0 => Axis::Roll,
-                1 => Axis::Yaw,
-                _ => Axis::Pitch,
-            };
-            joint.axis = At { value, span: word.span };
+        if let Some(axis) = view.choice("axis", [Axis::Roll, Axis::Yaw, Axis::Pitch], sink) {
+            joint.axis = axis;
         }
         joint.range = view.pair("range", sink).map(|range| range.value);
         joint.spring = spring(&view, sink);

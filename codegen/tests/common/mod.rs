@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "each test binary uses its part")]
 
 use piaffe_codegen::SpecFile;
-use piaffe_codegen::dynamics::{Kernel, LUMPS, Model, PARAMETERS, family_kernels, kernels};
+use piaffe_codegen::dynamics::{Kernel, LUMPS, Model, PARAMETERS, family_kernels_with_gradients, kernels};
 use piaffe_codegen::expr::Ring;
 use piaffe_codegen::mechanism::{Family, Mechanism, parameters};
 use piaffe_codegen::spec::{Gait, Robot, parse_gait, parse_robot};
@@ -87,8 +87,9 @@ impl Derived {
         let values: Vec<f64> = chosen.iter().map(|p| p.value).collect();
         let mut family = Family::new(&robot, &gait, chosen).unwrap();
         family.mechanism = with_all(family.mechanism);
-        let (model, kernels) = family_kernels(&family);
-        let kernels = kernels.gait.into_iter().chain(kernels.sensitivity).chain(kernels.parameters).collect();
+        let (model, derived, gradients) = family_kernels_with_gradients(&family);
+        let of_parameters = [gradients.numbers, derived.lumps, gradients.jacobian];
+        let kernels = derived.gait.into_iter().chain(gradients.sensitivity).chain(of_parameters).collect();
         let mut family = Derived { model, kernels, of_robot: vec![(PARAMETERS, values.clone())] };
         let lumps = family.run(LUMPS, &[&values]).get(LUMPS).to_vec();
         family.of_robot.push((LUMPS, lumps));

@@ -1,7 +1,7 @@
 //! Laws of passive impacts (eq. 11, 12).
 
 use super::common::Derived;
-use super::numbers::{along, assert_close, product, transposed_product};
+use super::numbers::{along, assert_close, assert_within, product, transposed_product};
 use super::state::State;
 use super::support::{largest, with_foot_at_rest};
 use piaffe_codegen::mechanism::other_leg;
@@ -23,7 +23,8 @@ fn momentum_balance(d: &Derived, s: &State, before: &[f64], after: &[f64], impul
         let jacobian = d.run(&format!("foot_jacobian{}", leg + 1), &[&s.q]);
         rest = along(&rest, -1.0, &product(jacobian.get("d"), impulse));
     }
-    assert_close("A(Ẋ⁺ − Ẋ⁻) − D I", &rest, &vec![0.0; rest.len()], 1e-9 * largest(&change).max(largest(impulses[0])));
+    let scale = largest(&change).max(largest(impulses[0])).max(largest(impulses[1]));
+    assert_within("A(Ẋ⁺ − Ẋ⁻) − D I", &rest, &vec![0.0; rest.len()], 1e-9, scale);
 }
 
 /// One foot comes to rest, the other is free (eq. 12).

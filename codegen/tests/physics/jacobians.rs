@@ -1,7 +1,7 @@
 //! Every Jacobian kernel against differences of values, and the staged kernels against the direct ones.
 
 use super::common::{Derived, Outputs};
-use super::numbers::{along, assert_close, difference, differences, dot, product, transposed_product};
+use super::numbers::{along, assert_close, assert_within, difference, differences, dot, product, transposed_product};
 use super::robots::Draws;
 use super::state::State;
 use super::support::{largest, prescribed};
@@ -67,7 +67,7 @@ pub fn of_impact(d: &Derived, s: &State, transition: Transition) {
     };
     let expected = differences(&w, values);
     let now = impact(d, &name, &w, &[]);
-    assert_close(&name, &gradients(d, &name, &now), &expected, TOLERANCE * largest(&expected));
+    assert_close(&name, &gradients(d, &name, &now), &expected, TOLERANCE);
 }
 
 /// The gradients of an impact's results but of what real feet share, row after row.
@@ -95,13 +95,12 @@ pub fn of_take_off(d: &Derived, s: &State, draws: &mut Draws, transition: Transi
         [r.get("r"), r.get("v"), r.get("lift")].concat()
     };
     let expected = differences(&w, values);
-    assert_close("∂(r, v, lift)", &all(&now), &expected, TOLERANCE * largest(&expected));
+    assert_close("∂(r, v, lift)", &all(&now), &expected, TOLERANCE);
     let kernel = transition.kernel("_curvature");
     let weights = weights(d, &kernel, "weights", draws);
     let curvature = d.run(&kernel, &[&s.q, &s.qd, &s.qdd, &weights]);
     let gradient = |w: &[f64]| transposed_product(&all(&run(w)), &weights);
-    let size = largest(&expected);
-    assert_close("gradient", curvature.get("gradient"), &gradient(&w), 1e-12 * size);
+    assert_within("gradient", curvature.get("gradient"), &gradient(&w), 1e-12, largest(&expected));
     second_derivatives_are(&curvature, &differences(&w, gradient), n);
 }
 
@@ -110,9 +109,8 @@ fn second_derivatives_are(found: &Outputs, expected: &[f64], n: usize) {
     let block = |row: usize, column: usize| -> Vec<f64> {
         (0..n).flat_map(|i| expected[(row * n + i) * 3 * n + column * n..][..n].to_vec()).collect()
     };
-    let size = largest(expected);
     for (output, row, column) in [("q_q", 0, 0), ("q_qd", 0, 1), ("q_qdd", 0, 2), ("qd_qd", 1, 1)] {
-        assert_close(output, found.get(output), &block(row, column), TOLERANCE * size);
+        assert_close(output, found.get(output), &block(row, column), TOLERANCE);
     }
 }
 
@@ -152,10 +150,9 @@ pub fn of_inverse_dynamics(d: &Derived, s: &State, mode: Mode) {
     let w = [s.q.clone(), s.qd.clone(), actuated.clone()].concat();
     let direct = inverse(&w);
     let r = d.run(&name("inverse_jacobian"), &[&s.q, &s.qd, &actuated]);
-    let size = largest(&of(&direct));
-    assert_close("Γ, F", &of(&r), &of(&direct), 1e-11 * size);
+    assert_close("Γ, F", &of(&r), &of(&direct), 1e-11);
     let beta = m.positions() + m.unactuated;
-    assert_close("β̈", r.get("beta_dd"), &direct.get("xdd")[beta..=beta], 1e-11 * size);
+    assert_close("β̈", r.get("beta_dd"), &direct.get("xdd")[beta..=beta], 1e-11);
 
     let forces: &[&str] = if mode == Mode::Flight { &["gamma_w"] } else { &["gamma_w", "f_w"] };
     let (balance, rows) = (r.get("balance_w"), forces.iter().flat_map(|rows| r.get(rows).chunks(3 * n)));
@@ -164,7 +161,7 @@ pub fn of_inverse_dynamics(d: &Derived, s: &State, mode: Mode) {
     let total: Vec<f64> =
         rows.flat_map(|row| free.clone().map(|k| row[k] - row[column] * balance[k] / balance[column])).collect();
     let expected = differences(&w, |w| of(&inverse(w)));
-    assert_close("d(Γ, F)/d(q, q̇, Q̈)", &total, &expected, TOLERANCE * size);
+    assert_close("d(Γ, F)/d(q, q̇, Q̈)", &total, &expected, TOLERANCE);
 }
 
 /// Early, then late, is eq. 8 and 9 with all gradients.
@@ -288,7 +285,7 @@ pub fn of_impacts_curvature(d: &Derived, s: &State, draws: &mut Draws, transitio
             }
         }
     }
-    assert_close("an impact's Hessian", &found, &expected, TOLERANCE * largest(&expected));
+    assert_close("an impact's Hessian", &found, &expected, TOLERANCE);
 }
 
 /// Heights and the second derivatives of their weighted sum.

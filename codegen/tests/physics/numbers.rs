@@ -65,8 +65,14 @@ pub fn differences(x: &[f64], f: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
 /// Equality relative to the largest number involved (and to 1).
 #[track_caller]
 pub fn assert_close(what: &str, found: &[f64], expected: &[f64], tolerance: f64) {
-    assert_eq!(found.len(), expected.len(), "{what}: length");
     let scale = found.iter().chain(expected).fold(1.0f64, |s, x| s.max(x.abs()));
+    assert_within(what, found, expected, tolerance, scale);
+}
+
+/// Equality relative to the size of what is added up, where that cancels or ends in zero.
+#[track_caller]
+pub fn assert_within(what: &str, found: &[f64], expected: &[f64], tolerance: f64, scale: f64) {
+    assert_eq!(found.len(), expected.len(), "{what}: length");
     for (i, (f, e)) in found.iter().zip(expected).enumerate() {
         assert!((f - e).abs() <= tolerance * scale, "{what}[{i}]: found {f}, expected {e}, scale {scale}");
     }

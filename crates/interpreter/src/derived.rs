@@ -4,13 +4,12 @@ use super::kept::{kept, text};
 use super::shapes::Shapes;
 use super::store::stored;
 use super::tape::{Tape, Unrunnable};
-use super::twins::{Twins, tapes};
+use super::twins::{Tapes, tapes};
 use piaffe_codegen::dynamics::{Kernel, family_kernels, kernels, lowest, whole_kernels};
 use piaffe_codegen::mechanism::{self, Mechanism};
 use piaffe_codegen::program::{Operations as Count, Program, programs};
 use piaffe_model::Operations;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 
 /// Of a gait, of one robot or of a family.
 #[derive(Serialize, Deserialize)]
@@ -19,7 +18,7 @@ pub struct Derived {
     pub lowest: Vec<usize>,
     pub shapes: Shapes,
     operations: Vec<Counted>,
-    pub tapes: BTreeMap<String, Twins>,
+    pub tapes: Tapes,
 }
 
 /// What a kernel costs.
@@ -54,8 +53,7 @@ impl Derived {
         stored(&format!("{family:?}"), || {
             let (mut model, derived) = family_kernels(family);
             let lowest = lowest(&mut model);
-            let [_, lumps, _] = &derived.parameters;
-            let lumps = Tape::new(lumps, &Program::new(&model.ring, lumps))?;
+            let lumps = Tape::new(&derived.lumps, &Program::new(&model.ring, &derived.lumps))?;
             Ok((Derived::new(lowest, &derived.gait, &programs(&model.ring, &derived.gait))?, lumps))
         })
     }
@@ -94,7 +92,7 @@ impl Counted {
 #[derive(Serialize, Deserialize)]
 pub struct DerivedWhole {
     pub shapes: Shapes,
-    pub tapes: BTreeMap<String, Twins>,
+    pub tapes: Tapes,
 }
 
 impl DerivedWhole {

@@ -4,7 +4,7 @@ use super::derived::Derived;
 use super::description::description;
 use super::kept::text;
 use super::tape::Unrunnable;
-use super::twins::{Twins, Which};
+use super::twins::{Tapes, Twins, Which};
 use super::whole::Whole;
 use piaffe_codegen::mechanism::{Mechanism, levers};
 use piaffe_codegen::spec;
@@ -81,17 +81,20 @@ fn locked(robot: &spec::Robot, gait: &spec::Gait) -> Result<spec::Robot, Unrunna
     robot.locked(&gait.locked).map_err(|tilted| Unrunnable::Tilted { joint: tilted.joint })
 }
 
-/// A structure with the tapes of all kernels, and the trait's methods that evaluate them. An input is `numbers` or a `number`.
+/// A structure with the tapes of all kernels, and the trait's methods that evaluate them. An input is `numbers` or a `number`; not
+/// every gait has a kernel that is there `if needed`.
 macro_rules! gait {
-    ($($name:ident $([$of:ident: $ty:ty])? ($($input:ident: $kind:ident),*);)*) => {
+    ($($name:ident $([$of:ident: $ty:ty])? ($($input:ident: $kind:ident),*) $(if $needed:ident)?;)*) => {
         /// The tapes of all kernels.
         pub struct Kernels {
             $($name: Twins,)*
         }
 
         impl Kernels {
-            pub fn new(mut tapes: std::collections::BTreeMap<String, Twins>) -> Kernels {
-                Kernels { $($name: tapes.remove(stringify!($name)).unwrap_or_default(),)* }
+            pub fn new(mut tapes: Tapes) -> Kernels {
+                let kernels = Kernels { $($name: gait!(take $($needed)? tapes stringify!($name)),)* };
+                tapes.end();
+                kernels
             }
 
             /// With these numbers for their first inputs.
@@ -131,6 +134,8 @@ macro_rules! gait {
             })*
         }
     };
+    (take needed $tapes:ident $name:expr) => { $tapes.take_any($name) };
+    (take $tapes:ident $name:expr) => { $tapes.take($name) };
     (type numbers) => { &[f64] };
     (type number) => { f64 };
     (slice numbers $input:ident) => { $input };
@@ -161,16 +166,16 @@ gait! {
     late[mode: Mode](early: numbers, beta: number);
     late_gradient[mode: Mode](early: numbers, beta: number);
     impact[leg: usize](q: numbers, xd: numbers);
-    touchdown[leg: usize](q: numbers, qd: numbers);
+    touchdown[leg: usize](q: numbers, qd: numbers) if needed;
     curvature[mode: Mode](q: numbers, qd: numbers, qdd: numbers, n: numbers, phi: numbers, others: numbers);
     heights_curvature[mode: Mode](q: numbers, weights: numbers);
-    touchdown_curvature[leg: usize](q: numbers, qd: numbers, xi: numbers, outputs: numbers);
-    landing[leg: usize](q: numbers, v: numbers, qd: numbers);
-    landing_curvature[leg: usize](q: numbers, v: numbers, qd: numbers, xi: numbers, outputs: numbers);
-    takeoff[leg: usize](q: numbers, qd: numbers, qdd: numbers);
-    takeoff_curvature[leg: usize](q: numbers, qd: numbers, qdd: numbers, weights: numbers);
-    sharing[mode: Mode](q: numbers, qd: numbers, qdd: numbers);
-    sharing_curvature[mode: Mode](q: numbers, qd: numbers, qdd: numbers, weights: numbers);
+    touchdown_curvature[leg: usize](q: numbers, qd: numbers, xi: numbers, outputs: numbers) if needed;
+    landing[leg: usize](q: numbers, v: numbers, qd: numbers) if needed;
+    landing_curvature[leg: usize](q: numbers, v: numbers, qd: numbers, xi: numbers, outputs: numbers) if needed;
+    takeoff[leg: usize](q: numbers, qd: numbers, qdd: numbers) if needed;
+    takeoff_curvature[leg: usize](q: numbers, qd: numbers, qdd: numbers, weights: numbers) if needed;
+    sharing[mode: Mode](q: numbers, qd: numbers, qdd: numbers) if needed;
+    sharing_curvature[mode: Mode](q: numbers, qd: numbers, qdd: numbers, weights: numbers) if needed;
     impact_both(q: numbers, xd: numbers);
 }
 

@@ -5,6 +5,7 @@
 //! chosen a [`Store`] does so once.
 
 #![forbid(unsafe_code)]
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 
 mod derived;
 mod description;

@@ -19,13 +19,12 @@ impl Shapes {
         let mut shapes = Shapes::default();
         for kernel in kernels {
             let path = match kernel.mode() {
-                Some(Mode::Stance(_)) => format!("stance.{}", kernel.base()),
-                Some(Mode::Flight) => format!("flight.{}", kernel.base()),
-                None => kernel.base().into(),
+                Some(Mode::Stance(_)) => format!("stance.{}", kernel.what),
+                Some(Mode::Flight) => format!("flight.{}", kernel.what),
+                None => kernel.what.clone(),
             };
             let outputs: Vec<Block> = kernel.outputs.iter().map(|o| Block { name: o.name, shape: o.shape }).collect();
-            let several = outputs.len() > 1 || kernel.inputs.iter().any(|input| !input.blocks.is_empty());
-            if several || kernel.base() == "early" {
+            if kernel.has_shape() {
                 shapes.insert(&path, &outputs);
             }
             kernel.inputs.iter().for_each(|input| shapes.insert(&format!("{path}.{}", input.name), &input.blocks));

@@ -5,7 +5,8 @@
 //! a processor that cannot foresee decisions does not have to.
 
 use piaffe_codegen::dynamics::Kernel;
-use piaffe_codegen::program::{Id, Node, Program, Step, Term, math, terms};
+use piaffe_codegen::math;
+use piaffe_codegen::program::{Id, Node, Program, Step, Term, terms};
 use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, btree_map};

@@ -48,22 +48,46 @@ impl Twins {
 }
 
 /// The tapes of all kernels, by what they compute, whichever leg or mode they are of.
+#[derive(Serialize, Deserialize)]
+pub struct Tapes(BTreeMap<String, Twins>);
+
+impl Tapes {
+    /// Those of a kernel that every gait has.
+    ///
+    /// # Panics
+    /// If it was not derived: its name is not that of the derivation.
+    pub fn take(&mut self, kernel: &str) -> Twins {
+        self.0.remove(kernel).unwrap_or_else(|| panic!("no kernel `{kernel}` is derived"))
+    }
+
+    /// Those of a kernel that a gait may do without.
+    pub fn take_any(&mut self, kernel: &str) -> Twins {
+        self.0.remove(kernel).unwrap_or_default()
+    }
+
+    /// After all have been taken.
+    ///
+    /// # Panics
+    /// If one is left: nobody knows its name.
+    pub fn end(self) {
+        assert!(self.0.is_empty(), "nobody evaluates the kernels {:?}", self.0.into_keys());
+    }
+}
+
+/// The tapes of all kernels.
 ///
 /// # Errors
 /// If there can be none of a kernel.
-pub fn tapes<'p>(
-    kernels: &[Kernel],
-    programs: impl IntoIterator<Item = &'p Program>,
-) -> Result<BTreeMap<String, Twins>, Unrunnable> {
+pub fn tapes<'p>(kernels: &[Kernel], programs: impl IntoIterator<Item = &'p Program>) -> Result<Tapes, Unrunnable> {
     let mut tapes: BTreeMap<String, Twins> = BTreeMap::new();
     for (kernel, program) in kernels.iter().zip(programs) {
         let which = match kernel.mode() {
             Some(mechanism::Mode::Flight) => Mode::Flight.which(),
-            _ => usize::from(kernel.is_of_leg() && !kernel.name.ends_with('1')),
+            _ => kernel.leg().unwrap_or_default(),
         };
-        if let Some(place) = tapes.entry(kernel.base().into()).or_default().0.get_mut(which) {
+        if let Some(place) = tapes.entry(kernel.what.clone()).or_default().0.get_mut(which) {
             *place = Some(Tape::new(kernel, program)?);
         }
     }
-    Ok(tapes)
+    Ok(Tapes(tapes))
 }

@@ -22,7 +22,6 @@ impl Whole {
         let whole = mechanism::Whole::new(robot);
         let derived = if of_many { DerivedWhole::derive(&whole) } else { DerivedWhole::of(&whole) };
         let DerivedWhole { shapes, mut tapes } = derived?;
-        let mut tape = |name| tapes.remove(name).unwrap_or_default();
         let joint = |j: &mechanism::WholeJoint| Joint { name: text(&j.name), rotor_inertia: j.rotor_inertia };
         let leg = |l: &mechanism::WholeLeg| Leg {
             name: text(&l.name),
@@ -30,6 +29,9 @@ impl Whole {
             foot_body: l.foot_body,
             foot: l.foot.map(|x| x + 0.0),
         };
+        let [inertia_and_bias, feet, feet_bias] =
+            ["inertia_and_bias", "feet", "feet_bias"].map(|kernel| tapes.take(kernel));
+        tapes.end();
         Ok(Whole {
             description: Description {
                 robot: text(&whole.robot),
@@ -39,9 +41,9 @@ impl Whole {
                 legs: whole.legs.iter().map(leg).collect(),
                 shapes: whole::Shapes::named("", &|name| shapes.block(name)),
             },
-            inertia_and_bias: tape("inertia_and_bias"),
-            feet: tape("feet"),
-            feet_bias: tape("feet_bias"),
+            inertia_and_bias,
+            feet,
+            feet_bias,
         })
     }
 }

@@ -95,8 +95,8 @@ impl Description {
         let hip = self.hip(leg);
         match self.rotation {
             Rotation::None => -hip[UP],
-            Rotation::Pitch => hip[UP].hypot(hip[FORWARD]),
-            Rotation::Roll => hip[UP].hypot(hip[SIDEWAYS]),
+            Rotation::Pitch => norm(&[hip[UP], hip[FORWARD]]),
+            Rotation::Roll => norm(&[hip[UP], hip[SIDEWAYS]]),
         }
     }
 }

@@ -6,10 +6,13 @@
 //! frames and units: X = [p, q], world axes Xf forward, Yf up, Zf to the right; SI.
 
 #![forbid(unsafe_code)]
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 
 mod contradiction;
+#[allow(clippy::disallowed_methods, reason = "words: how many digits a person reads")]
 pub mod digits;
 pub mod family;
+mod fingerprint;
 pub mod limit;
 pub mod motion;
 mod numbers;
@@ -20,11 +23,11 @@ pub mod whole;
 
 use crate::motion::Costs;
 pub use contradiction::Contradiction;
+pub use fingerprint::hash;
 pub use limit::Limit;
 pub use numbers::Lever;
 pub use specification::Specification;
 use std::borrow::Cow;
-use std::fmt;
 
 /// What a gait is made of, in numbers.
 #[derive(Clone, Debug)]
@@ -169,7 +172,7 @@ pub struct Body {
 }
 
 /// An actuated joint; N·m, rad and rad/s at the joint.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Joint {
     pub name: &'static str,
     pub range: [f64; 2],
@@ -203,23 +206,6 @@ impl Joint {
     /// Whether its motor has friction to overcome.
     pub fn has_friction(&self) -> bool {
         self.damping != 0.0 || self.coulomb != 0.0
-    }
-}
-
-/// Springs and friction are told where there are some: so a robot without them has the fingerprint that it always had.
-impl fmt::Debug for Joint {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let mut joint = f.debug_struct("Joint");
-        joint.field("name", &self.name).field("range", &self.range).field("gear", &self.gear);
-        joint.field("max_torque", &self.max_torque).field("unloaded_speed", &self.unloaded_speed);
-        joint.field("loaded_speed", &self.loaded_speed).field("rotor_inertia", &self.rotor_inertia);
-        if self.has_spring() {
-            joint.field("stiffness", &self.stiffness).field("rest", &self.rest);
-        }
-        if self.has_friction() {
-            joint.field("damping", &self.damping).field("coulomb", &self.coulomb);
-        }
-        joint.finish()
     }
 }
 
@@ -330,21 +316,6 @@ pub struct Operations {
 }
 
 impl Description {
-    /// Tells one robot and gait from another: a hash of all that describes them. How their kernels are written is no part of it.
-    pub fn fingerprint(&self) -> String {
-        let described = Description { shapes: &shape::Shapes::NONE, operations: &[], ..self.clone() };
-        // Whether it is spatial was a field of its own before the rotation. It is told as ever, so that a robot has the
-        // fingerprint that it always had.
-        let rotation = format!("rotation: {:?}, ", self.rotation);
-        let ever = format!("lateral: {}, {rotation}", self.is_spatial());
-        format!("{:016x}", hash(&format!("{described:?}").replacen(&rotation, &ever, 1)))
-    }
-
-    /// Whether it is a gait of the build's first robot, which the command line needs no name for.
-    pub fn is_of_first_robot(&self) -> bool {
-        !self.key.contains('/')
-    }
-
     /// Number of joints.
     pub fn joints(&self) -> usize {
         self.joints.len()
@@ -488,13 +459,8 @@ impl Description {
     }
 }
 
-fn norm(v: &[f64; 3]) -> f64 {
+fn norm(v: &[f64]) -> f64 {
     v.iter().map(|x| x * x).sum::<f64>().sqrt()
-}
-
-/// FNV-1a: the same on every machine and with every compiler.
-pub fn hash(text: &str) -> u64 {
-    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
 /// Generated dynamics of one gait. `leg` is 0 or 1: the leg named. In flight positions are from the mass centre, which falls: there is

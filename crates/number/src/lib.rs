@@ -3,6 +3,7 @@
 //! They know nothing of robots: optimizer and verifier both calculate with them.
 
 #![forbid(unsafe_code)]
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 
 mod dual;
 mod lanes;

@@ -43,6 +43,7 @@
 //! ```
 
 #![forbid(unsafe_code)]
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 // Several arrays run along one index in most loops here, as in the formulas.
 #![allow(clippy::needless_range_loop)]
 

@@ -51,7 +51,7 @@ pub enum Constraint {
 }
 
 impl Constraint {
-    /// All constraints of a gait, in the order of their slots.
+    /// All constraints of a gait, in the order in which they are told.
     pub fn all(description: &Description) -> impl Iterator<Item = Constraint> {
         use Constraint::*;
         let of_joints = (0..description.joints()).flat_map(|j| [Torque(j), Speed(j), LowerStop(j), UpperStop(j)]);
@@ -120,7 +120,6 @@ impl Constraint {
 #[derive(Clone, Debug)]
 pub struct Tally {
     phase: usize,
-    joints: usize,
     /// Constraint, least margin, its time.
     entries: Vec<(Constraint, f64, f64)>,
 }
@@ -129,7 +128,7 @@ impl Tally {
     /// For phase `phase`, 1-based.
     pub fn new(description: &Description, phase: usize) -> Tally {
         let entries = Constraint::all(description).map(|c| (c, f64::INFINITY, 0.0)).collect();
-        Tally { phase, joints: description.joints(), entries }
+        Tally { phase, entries }
     }
 
     /// Notes the margin of a constraint at a time; a margin that is not a number counts as violated.
@@ -139,27 +138,12 @@ impl Tally {
 
     /// The same at several times.
     pub fn note_all(&mut self, constraint: Constraint, margins: &[f64], times: &[f64]) {
-        let joints = 4 * self.joints;
-        let slot = match constraint {
-            Constraint::Torque(j) => 4 * j,
-            Constraint::Speed(j) => 4 * j + 1,
-            Constraint::LowerStop(j) => 4 * j + 2,
-            Constraint::UpperStop(j) => 4 * j + 3,
-            Constraint::VerticalForce => joints,
-            Constraint::Friction => joints + 1,
-            Constraint::Clearance => joints + 2,
-            Constraint::Touchdown => joints + 3,
-            Constraint::Shortest => joints + 4,
-            Constraint::Longest => joints + 5,
-            Constraint::VerticalImpulse => joints + 6,
-            Constraint::ImpulseFriction => joints + 7,
-            Constraint::Leaving => joints + 8,
-            Constraint::MeanSpeed => joints + 9,
-            Constraint::PlatformHeight => joints + 10,
-            Constraint::FootClearance(leg) => joints + 11 + leg.min(1),
-            Constraint::Height(point) => joints + 13 + point,
-        };
-        let Some((_, least, at)) = self.entries.get_mut(slot) else { return };
+        let slot = self.entries.iter().position(|entry| entry.0 == constraint).unwrap_or_else(|| {
+            // What the gait was not known to have is no reason to forget it.
+            self.entries.push((constraint, f64::INFINITY, 0.0));
+            self.entries.len() - 1
+        });
+        let (_, least, at) = &mut self.entries[slot];
         for (margin, time) in margins.iter().zip(times) {
             let margin = if margin.is_nan() { f64::MIN } else { *margin };
             if margin < *least {

@@ -19,6 +19,7 @@
 //! fixed order: the same motion gets the same receipt, to the bit, on every machine.
 
 #![forbid(unsafe_code)]
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 
 pub mod certificate;
 pub mod constraint;

@@ -3,7 +3,7 @@
 use super::draws::{GENERAL, member};
 use super::kernels::{assert_close, call, filled, mode, vector};
 use piaffe::model::Body;
-use piaffe_codegen::dynamics::{Kernel, Model, family_kernels, kernels};
+use piaffe_codegen::dynamics::{Kernel, Model, family_kernels_with_gradients, kernels};
 use piaffe_codegen::mechanism::{Family, Mechanism, parameters, with};
 use piaffe_codegen::spec::{Gait, Robot, parse_gait, parse_robot};
 use piaffe_family::FAMILIES;
@@ -32,7 +32,7 @@ fn outputs(kernel: &Kernel) -> usize {
 
 /// What the late kernels take is what the early ones of the same derivation give.
 fn early<'k>(kernel: &Kernel, inputs: &'k BTreeMap<String, Vec<f64>>) -> Option<&'k Vec<f64>> {
-    let mode = kernel.mode().filter(|_| kernel.base().starts_with("late"))?;
+    let mode = kernel.mode().filter(|_| kernel.what.starts_with("late"))?;
     inputs.get(&mode.kernel("early"))
 }
 
@@ -56,7 +56,7 @@ fn members_compute_what_is_derived_for_their_numbers() {
                     (inputs[0], own[0]) = (folded.clone(), mine.clone());
                 }
                 let expected = interpret(&model, kernel, &inputs);
-                if kernel.base() == "early" {
+                if kernel.what == "early" {
                     // The split may differ; what the late kernels make of it may not.
                     let length = robot_member.description().shape(mode(&kernel.name)).early.len;
                     let found = filled(length, |o| call(&*robot_member, &kernel.name, &own, o));
@@ -75,15 +75,16 @@ fn members_compute_what_is_derived_for_their_numbers() {
 fn sensitivities_compute_what_was_derived() {
     for family in FAMILIES {
         let (robot, gait) = specification(family.description.key);
-        let (model, derived) = family_kernels(&Family::new(&robot, &gait, parameters(&robot)).unwrap());
+        let (model, derived, gradients) =
+            family_kernels_with_gradients(&Family::new(&robot, &gait, parameters(&robot)).unwrap());
         let mut rng = fastrand::Rng::with_seed(12);
         let robot_member = member(family, &GENERAL, &mut rng);
-        let lumps = interpret(&model, &derived.parameters[1], &[robot_member.parameters().to_vec()]);
+        let lumps = interpret(&model, &derived.lumps, &[robot_member.parameters().to_vec()]);
         assert_close("lumps", robot_member.lumps(), &lumps, 1e-13);
         let jacobian = filled(lumps.len() * family.parameters.len(), |o| robot_member.lumps_jacobian(o));
-        let expected = interpret(&model, &derived.parameters[2], &[robot_member.parameters().to_vec()]);
+        let expected = interpret(&model, &gradients.jacobian, &[robot_member.parameters().to_vec()]);
         assert_close("∂lumps/∂parameters", &jacobian, &expected, 1e-13);
-        for kernel in &derived.sensitivity {
+        for kernel in &gradients.sensitivity {
             let inputs: Vec<Vec<f64>> =
                 kernel.inputs[1..].iter().map(|i| vector(i.symbols.len(), 1.0, &mut rng)).collect();
             let found = filled(outputs(kernel), |o| call(&*robot_member, &kernel.name, &inputs, o));

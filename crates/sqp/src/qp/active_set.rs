@@ -29,6 +29,8 @@ const VIOLATED: f64 = 1e-13;
 /// From this many rows on, each look at all of them yields up to `QUEUE` candidates.
 const MANY: usize = 100;
 const QUEUE: usize = 12;
+/// Share of its violation that a candidate must have kept while others were repaired: with less, all rows are looked at anew.
+const KEPT: f64 = 0.3;
 /// Rows whose values are found at once.
 const BLOCK: usize = 32;
 /// Residual of the optimality conditions at which the answer stands.
@@ -179,7 +181,7 @@ impl ActiveSet {
         let reach = 1.0 + max_abs(&self.d);
         while let Some((former, id)) = self.queue.pop() {
             if let Some((violation, sign)) = self.contradiction(qp, id, reach)
-                && violation >= 0.3 * former
+                && violation >= KEPT * former
             {
                 return Some((id, sign));
             }
@@ -197,7 +199,7 @@ impl ActiveSet {
             }
         }
         let (_, id) = self.queue.pop()?;
-        // The others must have kept most of what they are worth now.
+        // The others must have kept their share of what they are worth now.
         let (_, sign) = self.contradiction(qp, id, reach)?;
         for entry in &mut self.queue {
             if entry.0 == f64::MAX {
