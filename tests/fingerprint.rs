@@ -53,10 +53,13 @@ fn with_point(d: &mut Description, change: fn(&mut Point)) {
     d.points = points.leak();
 }
 
+/// Of one field.
+type Change = fn(&mut Description);
+
 #[test]
 fn every_field_counts() {
     let original = described("amble");
-    let changes: Vec<(&str, fn(&mut Description))> = vec![
+    let changes: Vec<(&str, Change)> = vec![
         ("key", |d| d.key = "pace"),
         ("gait", |d| d.gait = "pace"),
         ("robot", |d| d.robot = "another"),

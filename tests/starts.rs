@@ -26,13 +26,7 @@ const FEW: f64 = 0.04;
 fn result(gait: &dyn Gait, criterion: Criterion, local: &Local) -> GaitResult {
     let optimal = local.status.is_optimal();
     let optima = optimal.then(|| Optimum { local: local.clone(), reached: 1 }).into_iter().collect();
-    let found = Found {
-        optima,
-        failure: (!optimal).then(|| local.clone()),
-        motion: None,
-        attempt: None,
-        effort: Effort::default(),
-    };
+    let found = Found { optima, failure: (!optimal).then(|| local.clone()), motion: None, effort: Effort::default() };
     GaitResult::new(gait, criterion, SPEED, &found, &Settings::default(), || 0.0)
 }
 
