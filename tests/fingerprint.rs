@@ -56,7 +56,8 @@ fn with_point(d: &mut Description, change: fn(&mut Point)) {
 #[test]
 fn every_field_counts() {
     let original = described("amble");
-    let changes: Vec<(&str, fn(&mut Description))> = vec![
+    type Change = fn(&mut Description);
+    let changes: Vec<(&str, Change)> = vec![
         ("key", |d| d.key = "pace"),
         ("gait", |d| d.gait = "pace"),
         ("robot", |d| d.robot = "another"),
