@@ -101,6 +101,17 @@ impl Constraint {
         }
     }
 
+    /// Which of those with the same limit.
+    fn index(self) -> usize {
+        use Constraint::*;
+        match self {
+            Torque(j) | Speed(j) | LowerStop(j) | UpperStop(j) => j,
+            FootClearance(leg) => leg,
+            Height(point) => point,
+            _ => 0,
+        }
+    }
+
     /// What a person reads.
     pub fn name(self, description: &Description) -> String {
         use Constraint::*;
@@ -122,13 +133,22 @@ pub struct Tally {
     phase: usize,
     /// Constraint, least margin, its time.
     entries: Vec<(Constraint, f64, f64)>,
+    /// Which of them are of each kind of limit, in order.
+    slots: Vec<Vec<usize>>,
 }
 
 impl Tally {
     /// For phase `phase`, 1-based.
     pub fn new(description: &Description, phase: usize) -> Tally {
-        let entries = Constraint::all(description).map(|c| (c, f64::INFINITY, 0.0)).collect();
-        Tally { phase, entries }
+        let entries: Vec<_> = Constraint::all(description).map(|c| (c, f64::INFINITY, 0.0)).collect();
+        let mut slots: Vec<Vec<usize>> = Vec::new();
+        for (slot, (constraint, ..)) in entries.iter().enumerate() {
+            let kind = constraint.limit() as usize;
+            slots.resize_with(slots.len().max(kind + 1), Vec::new);
+            debug_assert_eq!(slots[kind].len(), constraint.index());
+            slots[kind].push(slot);
+        }
+        Tally { phase, entries, slots }
     }
 
     /// Notes the margin of a constraint at a time; a margin that is not a number counts as violated.
@@ -138,11 +158,7 @@ impl Tally {
 
     /// The same at several times.
     pub fn note_all(&mut self, constraint: Constraint, margins: &[f64], times: &[f64]) {
-        let slot = self.entries.iter().position(|entry| entry.0 == constraint).unwrap_or_else(|| {
-            // What the gait was not known to have is no reason to forget it.
-            self.entries.push((constraint, f64::INFINITY, 0.0));
-            self.entries.len() - 1
-        });
+        let slot = self.slot(constraint);
         let (_, least, at) = &mut self.entries[slot];
         for (margin, time) in margins.iter().zip(times) {
             let margin = if margin.is_nan() { f64::MIN } else { *margin };
@@ -150,6 +166,20 @@ impl Tally {
                 (*least, *at) = (margin, *time);
             }
         }
+    }
+
+    /// Which of the entries is that of a constraint.
+    #[inline]
+    fn slot(&mut self, constraint: Constraint) -> usize {
+        let alike = self.slots.get(constraint.limit() as usize);
+        if let Some(slot) = alike.and_then(|alike| alike.get(constraint.index())) {
+            return *slot;
+        }
+        // What the gait was not known to have is no reason to forget it.
+        self.entries.iter().position(|entry| entry.0 == constraint).unwrap_or_else(|| {
+            self.entries.push((constraint, f64::INFINITY, 0.0));
+            self.entries.len() - 1
+        })
     }
 
     /// Least margin of a constraint noted so far.

@@ -88,14 +88,15 @@ pub fn evaluate(
             let numbers = instants.numbers();
             let above = clearance(numbers, &state, lanes, Lanes(t));
             let [rise, fall] = [false, true].map(|at_end| steepness(numbers, &state, lanes, at_end));
-            for lane in 0..count {
+            let margin: [f64; LANES] = from_fn(|lane| {
                 let (above, per_height) = match (first + lane, rise, fall) {
                     (0, Some(rise), _) => (rise.0[lane], swing.descent()),
                     (i, _, Some(fall)) if i == last => (fall.0[lane], swing.descent()),
                     _ => (above.0[lane], swing.curve(t[lane])),
                 };
-                tally.note(swing.constraint, room(above, per_height) / units.leg, t[lane]);
-            }
+                room(above, per_height) / units.leg
+            });
+            tally.note_all(swing.constraint, &margin[..count], &t);
         }
         platform[first..first + count].copy_from_slice(&state.platform.x.0[..count]);
     }
