@@ -4,6 +4,7 @@
 //! expect: x forward, y to the left.
 
 #![forbid(unsafe_code)]
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 
 pub mod controller;
 mod frame;

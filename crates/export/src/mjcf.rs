@@ -155,7 +155,7 @@ fn start(d: &Description, m: &Moment) -> [(&'static str, String); 3] {
         Rotation::Roll => frame::axis(0),
         _ => frame::axis(2),
     };
-    let (sin, cos) = (0.5 * angle).sin_cos();
+    let (sin, cos) = libm::sincos(0.5 * angle);
     let mut position = frame::vector(m.platform[0]).to_vec();
     position.push(cos);
     position.extend(axis.map(|a| sin * a));

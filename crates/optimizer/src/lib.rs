@@ -2,6 +2,7 @@
 //! optimum, and what is said of it.
 
 #![forbid(unsafe_code)]
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 
 pub mod altered;
 pub mod audit;

@@ -385,7 +385,7 @@ impl Axes {
     /// These axes, turned by `angle` about their own axis `axis`.
     fn rotated(&self, axis: usize, angle: f64) -> Axes {
         let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
-        let (sin, cos) = angle.sin_cos();
+        let (sin, cos) = libm::sincos(angle);
         let mut turned = *self;
         for k in 0..3 {
             turned.0[a][k] = cos * self.0[a][k] + sin * self.0[b][k];

@@ -201,7 +201,7 @@ fn steps(dimensions: usize) -> Vec<f64> {
     let mut phi = 2.0_f64;
     // A contraction: after so many rounds nothing changes.
     for _ in 0..100 {
-        phi = (1.0 + phi).powf(1.0 / (dimensions as f64 + 1.0));
+        phi = libm::pow(1.0 + phi, 1.0 / (dimensions as f64 + 1.0));
     }
     (1..=dimensions).map(|j| phi.powi(-(j as i32))).collect()
 }

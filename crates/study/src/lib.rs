@@ -5,6 +5,7 @@
 //! `column` says what rows are as a table, which `table` writes as CSV and `columnar` as Parquet. `difference` sets two results side by side.
 
 #![forbid(unsafe_code)]
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 
 mod answers;
 mod column;

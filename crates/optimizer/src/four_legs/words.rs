@@ -170,7 +170,7 @@ fn percent(share: f64) -> String {
         // What rounding leaves of a zero.
         nothing if nothing < 1e-9 => "0".into(),
         small if small < 1e-3 => format!("{percent:.1e}"),
-        size => format!("{percent:.*}", (1.0 - size.log10().floor()).clamp(0.0, 4.0) as usize),
+        size => format!("{percent:.*}", (1.0 - libm::log10(size).floor()).clamp(0.0, 4.0) as usize),
     }
 }
 

@@ -134,7 +134,7 @@ fn nominal_posture(gait: &dyn Gait, plan: &Plan) -> Vec<f64> {
         let Some(hip) = swings(d, leg) else { continue };
         q[hip] = 0.0;
         let [x, y] = foot_from_hip(gait, &q, leg);
-        q[hip] = turned(-x.atan2(-y) - plan.pitch, d.joints[hip].range);
+        q[hip] = turned(-libm::atan2(x, -y) - plan.pitch, d.joints[hip].range);
     }
     if d.rotation == Rotation::Pitch {
         q[d.joints()] = plan.pitch;
@@ -247,7 +247,7 @@ impl Paths<'_> {
 /// Distance of leg 1's foot from its hip in the posture of a plan, m.
 fn reach(gait: &dyn Gait, plan: &Plan) -> f64 {
     let [x, y] = foot_from_hip(gait, &nominal_posture(gait, &Plan { pitch: 0.0, ..plan.clone() }), 0);
-    x.hypot(y)
+    libm::hypot(x, y)
 }
 
 /// Where a leg's foot is from its hip under a level platform, forward and up, m.

@@ -321,11 +321,14 @@ impl Task<'_> {
             better.solution.iterations += found.solution.iterations;
             (found, cycle) = (better, finer);
         }
-        let overpaid = if found.solution.status.is_optimal() && cycle.simulate(&found.solution.x).is_ok() {
-            cycle.overpaid(way.halts, &found.solution.inequality_multipliers)
-        } else {
-            Vec::new()
-        };
+        let mut overpaid = Vec::new();
+        if found.solution.status.is_optimal() && !way.halts.is_empty() {
+            // Of the rows that there are now: some came in after the solution.
+            let scale = cycle.scale();
+            if let Ok(priced) = multipliers(&mut cycle, &found.solution.x, scale) {
+                overpaid = cycle.overpaid(way.halts, &priced.inequalities);
+            }
+        }
         Solved { overpaid, ..finish(&mut cycle, found.solution, found.violation) }
     }
 }

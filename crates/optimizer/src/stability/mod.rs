@@ -58,5 +58,5 @@ pub fn stability(gait: &dyn Gait, motion: &Motion) -> Result<Stability, Undefine
 
 /// Whole steps in which a deviation that shrinks by `factor` in each is halved; none if it does not shrink.
 pub fn halving(factor: f64) -> Option<f64> {
-    (factor < 1.0).then(|| if factor > 0.0 { -std::f64::consts::LN_2 / factor.ln() } else { 0.0 })
+    (factor < 1.0).then(|| if factor > 0.0 { -std::f64::consts::LN_2 / libm::log(factor) } else { 0.0 })
 }

@@ -57,7 +57,7 @@ impl TimeTracking {
         let by_sigma = carried(Deviation { sigma: 1.0, ..Deviation::default() });
         let step = [[by_beta.beta, by_sigma.beta], [by_beta.sigma, by_sigma.sigma]];
         let eigenvalues = eigenvalues(&step);
-        let factor = eigenvalues.iter().map(|[re, im]| re.hypot(*im)).fold(0.0, f64::max);
+        let factor = eigenvalues.iter().map(|[re, im]| libm::hypot(*re, *im)).fold(0.0, f64::max);
         TimeTracking { eigenvalues, factor, steps_to_halve: halving(factor) }
     }
 }
