@@ -159,6 +159,40 @@ fn what_is_exported_for_mujoco_is_imported_with_the_same_legs() {
     }
 }
 
+/// Motors too; what URDF cannot say stands in it as a comment.
+#[test]
+fn what_is_exported_as_urdf_is_imported_with_the_same_motors() {
+    let springs = [("joints.knee.stiffness", 3.0), ("joints.knee.rest_angle", -0.6)];
+    let rotors = ["haunch", "knee"].map(|joint| (format!("actuators.{joint}_motor.rotor_inertia"), 1e-7));
+    let numbers = springs.iter().map(|(name, x)| (*name, *x)).chain(rotors.iter().map(|(name, x)| (name.as_str(), *x)));
+    let gait = rubbing::with(rubbing::GEARED).with_all(numbers).unwrap().gait("trot").unwrap();
+    let (mut result, _) = optimum(&gait, Criterion::Torque);
+    result.specification = gait.specification().cloned();
+    let text = String::from_utf8(export(&result, &["--format", "urdf"])).unwrap();
+    let d = gait.description();
+    assert!(text.contains("URDF knows no springs") && text.contains("rests at -0.6 rad"), "{text}");
+    let made = import(&text, &Options::default()).unwrap();
+    let robot = parse_robot("robot.toml", &made.robot).unwrap().robot;
+    let mut compared = 0;
+    for (leg, member) in d.legs.iter().flat_map(|leg| leg.members.iter().map(move |member| (leg, member))) {
+        for (name, limits) in member.joints.iter().zip(&d.joints[leg.first_joint..]) {
+            let share = leg.members.len() as f64;
+            let joint =
+                robot.legs.iter().flat_map(|leg| &leg.chain).map(|s| &s.joint).find(|j| j.name == *name).unwrap();
+            let motor = &joint.actuator;
+            let near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * b.abs();
+            assert!(
+                motor.gear == limits.gear
+                    && near(motor.rotor_inertia * motor.gear.powi(2), limits.rotor_inertia / share)
+            );
+            assert!(near(motor.max_torque * motor.gear, limits.max_torque / share), "{name}");
+            assert!(limits.rotor_inertia > 0.0 && limits.gear > 1.0, "{name}: nothing to compare");
+            compared += 1;
+        }
+    }
+    assert_eq!(compared, 8);
+}
+
 #[test]
 fn mujoco_agrees_about_masses_feet_and_inverse_dynamics_of_the_real_robot() {
     let Some(python) = python() else { return };
@@ -240,6 +274,7 @@ fn mujoco_agrees_about_masses_feet_and_inverse_dynamics_of_the_real_robot() {
 
         let arrays = &answer["arrays"];
         let walk = Walk::at_rate(gait, &motion, 500.0).unwrap();
+        assert!(["phase", "stance", "real_joint_of"].iter().all(|name| arrays[*name][0].is_i64()), "whole numbers");
         assert_eq!(numbers(&arrays["t"]), walk.moments.iter().map(|m| m.time).collect::<Vec<_>>());
         assert_eq!(numbers(&arrays["torque"][3]), walk.moments[3].torque);
         assert_eq!(numbers(&arrays["feet"][3][0]), walk.moments[3].chain(d, 0, 0).pop().unwrap());

@@ -7,10 +7,12 @@ use super::rigid::{IDENTITY, Rigid, Rotation3, apply, times, turn};
 use super::robot::RobotFile;
 use super::types::{Axis, Inertia, Joint, Leg, Link, Locked, Platform, Robot, Segment};
 
-/// A joint whose axis is no coordinate axis any more once others are locked.
+/// A joint whose axis is no coordinate axis any more once others are locked, or one that points backward.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Tilted {
     pub joint: String,
+    /// Whether it is a coordinate axis turned round: angles about it would count backward.
+    pub reversed: bool,
 }
 
 impl Robot {
@@ -46,7 +48,8 @@ fn lock(leg: &Leg, angles: &[(String, f64)], platform: &mut Platform) -> Result<
         let Segment { joint, link } = segment;
         let angle = angles.iter().find(|(name, _)| *name == joint.name).map(|(_, angle)| *angle);
         let Some(angle) = angle else {
-            let axis = carried_axis(&rotation, joint.axis).ok_or_else(|| Tilted { joint: joint.name.clone() })?;
+            let tilted = |reversed| Tilted { joint: joint.name.clone(), reversed };
+            let axis = carried_axis(&rotation, joint.axis).map_err(tilted)?;
             let mut segment = segment.clone();
             segment.joint.axis = axis;
             segment.link.put(&link.rigid().moved(&rotation, [0.0; 3]));
@@ -79,10 +82,13 @@ fn lock(leg: &Leg, angles: &[(String, f64)], platform: &mut Platform) -> Result<
     Ok(Leg { name: leg.name.clone(), mount, chain, locked: on_platform })
 }
 
-/// The coordinate axis that `axis` has become, if it is one.
-fn carried_axis(rotation: &Rotation3, axis: Axis) -> Option<Axis> {
+/// The coordinate axis that `axis` has become; else whether it has become one that is turned round.
+fn carried_axis(rotation: &Rotation3, axis: Axis) -> Result<Axis, bool> {
     let direction = rotation.map(|row| row[axis.index()]);
-    Axis::ALL.into_iter().find(|a| direction[a.index()] > 1.0 - 1e-12)
+    // As far as products of sines and cosines round.
+    let along = |a: &Axis, sign: f64| sign * direction[a.index()] > 1.0 - 1e-12;
+    let reversed = Axis::ALL.iter().any(|a| along(a, -1.0));
+    Axis::ALL.into_iter().find(|a| along(a, 1.0)).ok_or(reversed)
 }
 
 impl Link {
@@ -151,13 +157,17 @@ pub(super) fn with_locked(angles: &[(At<String>, f64)], robot: &RobotFile, sink:
     let plain: Vec<(String, f64)> = angles.iter().map(|(name, angle)| (name.value.clone(), *angle)).collect();
     match robot.robot.locked(&plain) {
         Ok(locked) => Some(RobotFile { robot: locked, ..robot.clone() }),
-        Err(Tilted { joint }) => {
+        Err(Tilted { joint, reversed }) => {
             let (name, _) = angles.iter().rfind(|(_, angle)| *angle != 0.0).or(angles.first())?;
-            let title = format!("locking `{}` tilts the axis of joint `{joint}`", name.value);
+            let (turns, would) = match reversed {
+                true => ("turns round", format!("angles of `{joint}` would count backward")),
+                false => ("tilts", format!("`{joint}` would turn about an oblique axis")),
+            };
+            let title = format!("locking `{}` {turns} the axis of joint `{joint}`", name.value);
             let help =
                 "lock it at 0, or let it move: axes stay parallel to the platform's where all joints are at zero";
             sink.report(Code::CannotLock, title, &name.span, "turns what hangs on it", help);
-            sink.beside(robot.axis_label(&joint, format!("`{joint}` would turn about an oblique axis")));
+            sink.beside(robot.axis_label(&joint, would));
             None
         }
     }

@@ -18,6 +18,11 @@ const PLATFORM: f64 = 1.0 / 15.0;
 /// Time step as a share of √(leg/gravity).
 const TIME_STEP: f64 = 3e-3;
 
+/// Of a contact: sliding, and what spinning and rolling have if nothing is said, m. Points do neither.
+fn friction(d: &Description) -> String {
+    numbers(&[d.limits.friction, 0.005, 0.0001])
+}
+
 /// A number that need not be exact.
 fn about(x: f64) -> String {
     format!("{x:.1e}").parse().unwrap_or(x).to_string()
@@ -43,7 +48,7 @@ pub fn mjcf(walk: &Walk) -> String {
                 ("size", "0 0 0.5".into()),
                 ("contype", "1".into()),
                 ("conaffinity", "1".into()),
-                ("friction", numbers(&[d.limits.friction, 0.005, 0.0001])),
+                ("friction", friction(d)),
                 ("rgba", "0.9 0.92 0.94 1".into()),
             ];
             x.leaf("geom", &ground);
@@ -137,7 +142,7 @@ fn limb(x: &mut Xml, d: &Description, leg: &Leg, member: &Member, bodies: &[Body
                 ("pos", numbers(&centre)),
                 ("contype", "1".into()),
                 ("conaffinity", "1".into()),
-                ("friction", numbers(&[d.limits.friction, 0.005, 0.0001])),
+                ("friction", friction(d)),
             ];
             x.leaf("geom", &foot);
         }

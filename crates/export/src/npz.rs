@@ -6,7 +6,7 @@ use std::io::{Cursor, Write};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
-/// Arrays by name, over the moments: `t` (n), `phase`, `stance` (n; 1 or 2), `p`, `pd`, `pdd` (n × 3: the platform's
+/// Arrays by name, over the moments: `t` (n), `phase`, `stance` (n; whole numbers from 1, in flight 0), `p`, `pd`, `pdd` (n × 3: the platform's
 /// mass centre), `q`, `qd`, `qdd` (n × coordinates), `torque` (n × joints), `force` (n × 3), `feet` (n × legs × 3), for each
 /// real leg `chain_NAME` (n × points × 3: its joints from the platform down, and its foot); and the names `coordinates`, `joints` (of the virtual legs), `legs`, `real_joints`, and of each of the last the index of the coordinate
 /// that it follows (`real_joint_of`). SI units, rad.
@@ -23,8 +23,6 @@ pub fn npz(walk: &Walk) -> std::io::Result<Vec<u8>> {
         archive.put(name, "<f8", &shape, &values)
     };
     put("t", &[], &|m| vec![m.time])?;
-    put("phase", &[], &|m| vec![(m.phase + 1) as f64])?;
-    put("stance", &[], &|m| vec![m.mode.stance().map_or(0.0, |leg| (leg + 1) as f64)])?;
     for (k, name) in ["p", "pd", "pdd"].into_iter().enumerate() {
         put(name, &[3], &|m| m.platform[k].to_vec())?;
     }
@@ -40,14 +38,16 @@ pub fn npz(walk: &Walk) -> std::io::Result<Vec<u8>> {
         let points = d.legs[leg].members[member].bodies.len() + 1;
         put(&format!("chain_{name}"), &[points, 3], &|m| m.chain(d, leg, member).concat())?;
     }
+    let count = |of: fn(&Moment) -> usize| walk.moments.iter().map(of).collect::<Vec<_>>();
+    archive.indices("phase", &count(|m| m.phase + 1))?;
+    archive.indices("stance", &count(|m| m.mode.stance().map_or(0, |leg| leg + 1)))?;
     let of: Vec<String> = coordinates(d);
     archive.words("coordinates", &of.iter().map(String::as_str).collect::<Vec<_>>())?;
     archive.words("joints", &d.joints.iter().map(|j| j.name).collect::<Vec<_>>())?;
     archive.words("legs", &names)?;
     let (of, real): (Vec<usize>, Vec<&str>) = real_joints(d).unzip();
     archive.words("real_joints", &real)?;
-    let of: Vec<u8> = of.into_iter().flat_map(|k| (k as f64).to_le_bytes()).collect();
-    archive.put("real_joint_of", "<f8", &[real.len()], &of)?;
+    archive.indices("real_joint_of", &of)?;
     Ok(archive.zip.finish()?.into_inner())
 }
 
@@ -68,6 +68,12 @@ impl Archive {
         self.zip.write_all(&(header.len() as u16).to_le_bytes())?;
         self.zip.write_all(header.as_bytes())?;
         self.zip.write_all(values)
+    }
+
+    /// An array of whole numbers.
+    fn indices(&mut self, name: &str, numbers: &[usize]) -> std::io::Result<()> {
+        let bytes: Vec<u8> = numbers.iter().flat_map(|k| (*k as i64).to_le_bytes()).collect();
+        self.put(name, "<i8", &[numbers.len()], &bytes)
     }
 
     /// An array of texts: four bytes per character, all of one length.

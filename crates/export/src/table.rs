@@ -50,7 +50,7 @@ fn row(d: &Description, m: &Moment) -> Vec<f64> {
 
 /// The platform's mass centre (x, y, z; with d its velocity, with dd its acceleration), the coordinates with rates
 /// and accelerations, the torques of the virtual legs' joints, the reaction on the virtual leg in support
-/// (`stance`: 1 or 2), and the real feet. Angles in rad.
+/// (`stance`: 1 or 2, in flight 0), and the real feet. Angles in rad.
 pub fn csv(walk: &Walk) -> String {
     let d = walk.description;
     let mut text = header(d).join(",");

@@ -8,6 +8,7 @@ pub fn urdf(d: &Description) -> String {
     let mut xml = Xml::new();
     xml.element("robot", &[("name", d.robot.into())], |x| {
         x.comment("Efforts are those of one real leg's joint; the speed limit is the unloaded one.");
+        x.comment(&format!("URDF knows no gravity: this robot's is {} m/s².", d.gravity));
         let base = &d.bodies[0];
         link(x, base.name.into(), Some(base));
         for leg in &d.legs {
@@ -42,12 +43,34 @@ fn limb(x: &mut Xml, d: &Description, leg: &Leg, member: &Member) {
                 x.leaf("dynamics", &friction);
             }
         });
+        if limits.has_spring() {
+            let stiffness = limits.stiffness / leg.members.len() as f64;
+            let rest = limits.rest;
+            x.comment(&format!(
+                "URDF knows no springs: {name} has one of {stiffness} N·m/rad that rests at {rest} rad."
+            ));
+        }
+        transmission(x, name, limits.gear, limits.rotor_inertia / leg.members.len() as f64);
         parent = child;
     }
     let foot = super::foot_name(d, member);
     link(x, foot.clone(), None);
     let name = format!("{foot}_fixed");
     x.element("joint", &[("name", name), ("type", "fixed".into())], |x| ends(x, &parent, &foot, member.foot));
+}
+
+/// The motor of a joint: its gear, and of its rotor what the joint feels, kg·m².
+fn transmission(x: &mut Xml, joint: &str, gear: f64, reflected: f64) {
+    x.element("transmission", &[("name", format!("{joint}_transmission"))], |x| {
+        x.text("type", "transmission_interface/SimpleTransmission");
+        x.element("joint", &[("name", joint.into())], |x| {
+            x.text("hardwareInterface", "hardware_interface/EffortJointInterface");
+        });
+        x.element("actuator", &[("name", format!("{joint}_motor"))], |x| {
+            x.text("mechanicalReduction", &gear.to_string());
+            x.text("motorInertia", &(reflected / (gear * gear)).to_string());
+        });
+    });
 }
 
 fn ends(x: &mut Xml, parent: &str, child: &str, at: [f64; 3]) {

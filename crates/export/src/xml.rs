@@ -32,6 +32,11 @@ impl Xml {
         self.tag(name, attributes, "/>\n");
     }
 
+    /// An element with a text.
+    pub fn text(&mut self, name: &str, text: &str) {
+        self.tag(name, &[], &format!(">{}</{name}>\n", escaped(text)));
+    }
+
     /// An element with what `contents` writes.
     pub fn element(&mut self, name: &'static str, attributes: Attributes, contents: impl FnOnce(&mut Xml)) {
         self.tag(name, attributes, ">\n");

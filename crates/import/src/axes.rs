@@ -24,6 +24,10 @@ impl Direction {
         v
     }
 
+    fn reversed(self) -> Direction {
+        Direction { negative: !self.negative, ..self }
+    }
+
     fn of(v: &Vector3<f64>) -> Direction {
         let (axis, sign, _) = nearest_axis(v);
         Direction { axis, negative: sign < 0.0 }
@@ -52,6 +56,9 @@ impl fmt::Display for Direction {
 /// Axes farther than this from a coordinate axis say nothing of it, rad.
 const OBLIQUE: f64 = 0.2;
 
+/// Legs point up that rise by this share of their length where all joints are at zero, and reach as much farther up than down.
+const UPWARD: f64 = 0.5;
+
 const X: Direction = Direction { axis: 0, negative: false };
 const Z: Direction = Direction { axis: 2, negative: false };
 
@@ -71,7 +78,7 @@ pub fn rotation(options: &Options, faults: &mut Faults) -> UnitQuaternion<f64> {
 
 /// Says what speaks against the axes that were taken, unless a person gave them.
 pub fn ask(model: &Model, limbs: &Limbs, options: &Options, faults: &mut Faults) {
-    if options.forward.is_some() {
+    if options.forward.is_some() && options.up.is_some() {
         return;
     }
     let taken = rotation(options, &mut Faults::default());
@@ -86,6 +93,12 @@ pub fn ask(model: &Model, limbs: &Limbs, options: &Options, faults: &mut Faults)
         down += bodies[last].rigid.com - bodies[chain.first().map_or(0, |b| *b)].origin;
     }
     let place = &model.links[bodies[0].link].place;
+    if options.up.is_none() && ask_up(model, limbs, &taken, &down, options, faults) {
+        return;
+    }
+    if options.forward.is_some() {
+        return;
+    }
     let across = (0..3).max_by_key(|k| (turning[*k], *k == PITCH)).unwrap_or(PITCH);
     // A leg that walks has two joints that swing it.
     if turning[across] > turning[PITCH] && turning[across] >= 2 * limbs.chains.len() {
@@ -122,6 +135,33 @@ pub fn ask(model: &Model, limbs: &Limbs, options: &Options, faults: &mut Faults)
             "if it faces backward: --forward -x; if it is right as it is: --forward x",
         );
     }
+}
+
+/// Asks which way is up where gravity or the legs say something else; true if it does.
+fn ask_up(
+    model: &Model,
+    limbs: &Limbs,
+    taken: &UnitQuaternion<f64>,
+    down: &Vector3<f64>,
+    options: &Options,
+    faults: &mut Faults,
+) -> bool {
+    let place = &model.links[limbs.tree.bodies[0].link].place;
+    let upright = Direction::of(&(taken.inverse() * Vector3::y()));
+    let [below, above] = [0, 1].map(|side| limbs.reach.iter().map(|reach| reach[side]).sum::<f64>());
+    let told = model.up.filter(|up| nearest_axis(up).2 < OBLIQUE).map(|up| Direction::of(&up));
+    let (up, what) = match told.filter(|up| *up != upright) {
+        Some(up) => (up, format!("gravity points along {} of this link", up.reversed())),
+        None if told.is_none() && down.y > UPWARD * down.norm() && above > 1.0 / UPWARD * below => {
+            (upright.reversed(), "the legs point up, all joints at zero".to_string())
+        }
+        None => return false,
+    };
+    let forward = options.forward.unwrap_or(X);
+    let forward = if forward.axis == up.axis { Z } else { forward };
+    let remedy = format!("if {up} of it is up: --forward {forward} --up {up}; if it is right as it is: --up {upright}");
+    faults.add(Kind::Axes, Some(place), format!("{what}: is the robot turned?"), remedy);
+    true
 }
 
 /// The coordinate direction nearest to this one.

@@ -153,11 +153,20 @@ fn plans(robot: &Robot, arrangement: &Arrangement) -> Vec<Plan> {
             vec![trot, Plan { flights: after_each("trot"), ..running }, bound, flying]
         }
         _ if !robot.legs.is_empty() && arrangement.alike => vec![alternating(
-            "tripod",
+            alternating_name(pairs.len()),
             false,
             "Legs alternate from pair to pair and from left to right; the platform stays level.",
         )],
         _ => Vec::new(),
+    }
+}
+
+/// What the gait of alternating legs of this many pairs is called: by how many stand at a time.
+pub fn alternating_name(pairs: usize) -> &'static str {
+    match pairs {
+        3 => "tripod",
+        4 => "tetrapod",
+        _ => "alternating",
     }
 }
 
@@ -173,7 +182,7 @@ fn text(robot: &Robot, plan: &Plan, halves: &str, clearance: f64) -> String {
         false => ("none", format!("leg1.{haunch}")),
     };
     // What a robot of this size and weight can do without being put to the test: limits in its natural units.
-    let beat = (robot.reach() / 9.81).sqrt();
+    let beat = (robot.reach() / robot.fall()).sqrt();
     let duration = |shortest: f64, longest: f64| format!("[{}, {}]", round(shortest * beat), round(longest * beat));
     let (phases, half_steps) = match plan.flights {
         None => (

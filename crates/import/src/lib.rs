@@ -17,6 +17,7 @@ mod inertia;
 mod limbs;
 mod mjcf;
 mod model;
+mod options;
 mod robot;
 pub mod standing;
 mod symmetry;
@@ -194,7 +195,8 @@ pub fn import(text: &str, options: &Options) -> Result<Import, ImportError> {
     let model = read(text, &mut faults)?;
     let skeleton = tree::Skeleton::new(&model, &mut faults);
     faults.settle()?;
-    let Some(skeleton) = skeleton else { return Err(ImportError(Vec::new())) };
+    let skeleton = skeleton.expect("a skeleton, where nothing was wrong");
+    options::check(&model, options, &mut faults);
     let axes = axes::rotation(options, &mut faults);
     faults.settle()?;
     let limbs = limbs::find(&model, &skeleton, options, &axes, &mut faults);
@@ -219,11 +221,12 @@ pub fn import(text: &str, options: &Options) -> Result<Import, ImportError> {
         faults.add(Kind::Legs, None, unpaired(&robot), "hold what is no leg (--lock JOINT/), name what is one (--foot LINK), or say which way is forward (--forward)");
         return Err(ImportError(faults.take()));
     };
+    notes.extend(options::idle(&model, &limbs, options));
     remarks(&model, &robot, &mut notes);
     notes.extend(arrangement.differences.iter().cloned());
     notes.extend(arrangement.consequence());
     let text = write::robot(&robot, model.format, &notes);
-    let file = parse_robot("robot.toml", &text).map_err(|mistakes| refused(&mistakes))?;
+    let file = parse_robot("robot.toml", &text).map_err(|mistakes| refused(&mistakes, &robot))?;
     let gaits = gaits::find(&robot, &arrangement, &file);
     if gaits.candidates.is_empty() {
         let mut why = arrangement.differences.clone();
@@ -236,7 +239,7 @@ pub fn import(text: &str, options: &Options) -> Result<Import, ImportError> {
     notes.extend(gaits.notes);
     notes.push("the limits of the gaits (friction, clearance, forces, durations) are assumed".into());
     let untried = trial::untried(&gaits.candidates);
-    let folder = write::folder(&robot.name);
+    let folder = write::folder(&robot.name, gaits.candidates.iter().map(|candidate| candidate.name.as_str()));
     Ok(Import { folder, robot: text, gaits: untried, candidates: gaits.candidates, found: Vec::new(), notes })
 }
 
@@ -271,7 +274,7 @@ fn read(text: &str, faults: &mut Faults) -> Result<Model, ImportError> {
         }
     };
     faults.settle()?;
-    model.ok_or(ImportError(Vec::new()))
+    Ok(model.expect("a model, where nothing was wrong"))
 }
 
 /// Why legs form no pairs.
@@ -317,18 +320,31 @@ fn remarks(model: &Model, robot: &robot::Robot, notes: &mut Vec<String>) {
 }
 
 /// What the specification's checks say of a text that was made here.
-fn refused(mistakes: &[piaffe_codegen::spec::Diagnostic]) -> ImportError {
+fn refused(mistakes: &[piaffe_codegen::spec::Diagnostic], robot: &robot::Robot) -> ImportError {
     let mut faults = Faults::default();
     for mistake in mistakes {
         let (line, _) = mistake.line_column();
-        let text = mistake.primary.source.text().lines().nth(line - 1).unwrap_or_default();
+        let lines: Vec<&str> = mistake.primary.source.text().lines().take(line).collect();
+        let text = lines.last().copied().unwrap_or_default();
         let what = format!("{} ({}, robot.toml would say `{text}`)", mistake.title, mistake.code);
-        faults.add(Kind::Specification, None, what, mistake.help.clone());
+        let header = lines.iter().rfind(|line| line.starts_with('[')).copied().unwrap_or_default();
+        let places = write::sources(robot, header);
+        if places.is_empty() {
+            faults.add(Kind::Specification, None, what, mistake.help.clone());
+            continue;
+        }
+        let remedy = match header.starts_with("[actuators.") {
+            true => {
+                "correct its greatest torque or speed, or give another one: --effort JOINT=…, --velocity JOINT=…, --gear JOINT=…"
+            }
+            false => "correct what the file says of it",
+        };
+        places.into_iter().for_each(|place| faults.add(Kind::Specification, Some(place), what.clone(), remedy));
     }
     ImportError(faults.take())
 }
 
-/// Angles between axes that count as rounding, rad.
+/// Angles between axes of joints and of the trunk that count as rounding, rad: 0.1°, which no assembly keeps.
 const ROUNDED: f64 = 2e-3;
 
 /// The coordinate axis nearest to a direction of unit length, 1 or −1 where it points along it or against it, and the angle

@@ -6,7 +6,7 @@ use super::fault::{Faults, Kind};
 use super::foot::{self, Foot};
 use super::model::{Kind as JointKind, Model};
 use super::tree::{Body, Held, Skeleton, Tree};
-use super::words::{fits, is_leg, is_other_limb, nearest};
+use super::words::{fits, is_leg, is_of_foreleg, is_other_limb, short_list};
 use super::{Options, nearest_axis};
 use nalgebra::{Rotation3, Unit, UnitQuaternion, Vector3};
 use piaffe_model::digits::digits;
@@ -14,6 +14,16 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// The share of the greatest depth that a leg must reach.
 const DEPTH: f64 = 0.7;
+/// Joints of a chain beyond which it is no leg, and takes long.
+const LONGEST: usize = 12;
+/// A foot is in the middle that is not farther from it than this share of the others.
+const MIDDLE: f64 = 0.05;
+/// Feet on either side of the middle are farther apart than this share of the depth.
+const ASTRIDE: f64 = 0.04;
+/// Places are one that are no farther apart than this share of the depth.
+const ONE_PLACE: f64 = 0.02;
+/// Whoever stands on arms has them no higher than this share of the depth, all joints at zero.
+const STANDS: f64 = 0.15;
 /// Feet of one leg are not farther apart than this share of the depth.
 const ONE_LEG: f64 = 0.35;
 
@@ -23,6 +33,8 @@ pub struct Limbs {
     pub legs: Vec<Limb>,
     /// Chains of legs, also of those without a foot.
     pub chains: Vec<Vec<usize>>,
+    /// How far they reach below and above their mounts, m.
+    pub reach: Vec<[f64; 2]>,
     pub notes: Vec<String>,
 }
 
@@ -77,13 +89,9 @@ impl Search<'_> {
             };
             let matched: Vec<usize> =
                 (0..self.model.joints.len()).filter(|j| fits(pattern, &self.model.joints[*j].name)).collect();
-            if matched.is_empty() {
-                let near = nearest(pattern, self.model.joints.iter().map(|j| j.name.as_str()));
-                let remedy = near.map_or_else(
-                    || "name a joint of the file, or a pattern with * and ?".into(),
-                    |near| format!("did you mean --lock {near}?"),
-                );
-                faults.add(Kind::Option, None, format!("--lock {}: there is no such joint", lock.pattern), remedy);
+            if !matched.is_empty() && matched.iter().all(|j| self.model.joints[*j].kind == JointKind::Fixed) && !subtree
+            {
+                self.notes.push(format!("--lock {} changes nothing: the joint is fixed in the file", lock.pattern));
             }
             let mut all = matched.clone();
             if subtree {
@@ -95,39 +103,45 @@ impl Search<'_> {
             }
             for index in all {
                 let joint = &self.model.joints[index];
-                if matches!(joint.kind, JointKind::Fixed) {
+                let angle = lock.angle.filter(|_| matched.contains(&index));
+                if let (Some(angle), false) = (angle, joint.has_angle() || joint.kind == JointKind::Fixed) {
+                    let what = format!("--lock {}={}: one number does not say where it is", joint.name, digits(angle));
+                    let remedy = format!("write --lock {}", joint.name);
+                    faults.add(Kind::Option, Some(&joint.place), what, remedy);
+                }
+                if joint.kind == JointKind::Fixed {
                     continue;
                 }
-                let angle = lock.angle.filter(|_| matched.contains(&index));
                 if let (Some(angle), Some([low, high])) = (angle, joint.range)
-                    && joint.kind == JointKind::Revolute
+                    && (joint.slides || joint.kind == JointKind::Revolute)
                     && !(low..=high).contains(&angle)
                 {
                     let [at, first, last] = [angle, low, high].map(digits);
-                    let what = format!("--lock {}={at}: its stops are at {first} and {last} rad", joint.name);
+                    let unit = joint.unit();
+                    let what = format!("--lock {}={at}: its stops are at {first} and {last} {unit}", joint.name);
                     let remedy =
                         format!("write --lock {}={}", joint.name, digits(angle.clamp(low.min(high), high.max(low))));
                     faults.add(Kind::Option, Some(&joint.place), what, remedy);
                 }
-                let angle = angle.unwrap_or_else(|| at_rest(self.model, index));
+                let angle = angle.unwrap_or(joint.at_rest());
                 self.held.insert(index, angle);
-                if joint.turns() {
-                    self.notes.push(format!(
-                        "`{}` is held at {} rad (the file's angle), as you say",
-                        joint.name,
-                        digits(angle)
-                    ));
-                }
+                let (name, angle, unit) = (&joint.name, digits(angle), joint.unit());
+                let of = if joint.slides { "place" } else { "angle" };
+                self.notes.push(match joint.has_angle() {
+                    true => format!("`{name}` is held at {angle} {unit} (the file's {of}), as you say"),
+                    false => format!("`{name}` is held as it is in the file, as you say"),
+                });
             }
         }
     }
 
     fn hold(&mut self, proposal: Proposal) {
         let names: Vec<String> = proposal.joints.iter().map(|j| format!("`{}`", self.model.joints[*j].name)).collect();
-        let angles: Vec<f64> = proposal.joints.iter().map(|j| at_rest(self.model, *j)).collect();
+        let angles: Vec<f64> = proposal.joints.iter().map(|j| self.model.joints[*j].at_rest()).collect();
+        let unit = proposal.joints.first().map_or("rad", |j| self.model.joints[*j].unit());
         let at = match angles.iter().all(|a| *a == 0.0) {
-            true => "0 rad".to_string(),
-            false => format!("{angles:.4?} rad"),
+            true => format!("0 {unit}"),
+            false => format!("{angles:.4?} {unit}"),
         };
         let are = if names.len() == 1 { "is" } else { "are" };
         self.notes.push(format!("{} {are} held at {at}: {}", short_list(&names), proposal.why));
@@ -150,6 +164,7 @@ impl Search<'_> {
             .or_else(|| self.no_lever(tree, legs))
             .or_else(|| self.massless(tree, legs))
             .or_else(|| self.oblique(tree, legs))
+            .or_else(|| self.off_zero(tree, legs))
             .into_iter()
             .collect()
     }
@@ -175,24 +190,28 @@ impl Search<'_> {
         let ends = (1..tree.bodies.len()).filter(|b| !carries[*b]);
         ends.map(|body| {
             let path = tree.path(body);
-            let point = self.contact(&tree.bodies[body]);
-            let depth = self.depth(tree, &path, &point);
+            let point = self.contact(tree, body);
+            let depth = self.depth(tree, &path, &point, 1.0);
             Tip { body, mount: tree.bodies[path[0]].origin, path, point, depth }
         })
         .collect()
     }
 
     /// The foot of a body, or what comes nearest to one.
-    fn contact(&self, body: &Body) -> Vector3<f64> {
-        let fallback = if body.rigid.mass > 0.0 { body.rigid.com } else { body.origin };
-        foot::find(self.model, body, self.options).map_or(fallback, |f| f.point)
+    fn contact(&self, tree: &Tree, body: usize) -> Vector3<f64> {
+        let Body { rigid, origin, .. } = &tree.bodies[body];
+        let fallback = if rigid.mass > 0.0 { rigid.com } else { *origin };
+        self.foot(tree, body).map_or(fallback, |f| f.point)
     }
 
-    /// The lowest height that the end of a chain reaches within the joints' stops, m.
-    fn depth(&self, tree: &Tree, path: &[usize], point: &Vector3<f64>) -> f64 {
-        // Long chains are no legs, and take long.
-        if path.len() > 12 {
-            return point.y;
+    fn foot(&self, tree: &Tree, body: usize) -> Option<Foot> {
+        foot::find(self.model, tree, body, self.options)
+    }
+
+    /// The lowest height that the end of a chain reaches within the joints' stops, m; turned over (`up` −1) minus the highest one.
+    fn depth(&self, tree: &Tree, path: &[usize], point: &Vector3<f64>, up: f64) -> f64 {
+        if path.len() > LONGEST {
+            return up * point.y;
         }
         let stops: Vec<[f64; 2]> = path.iter().map(|b| self.stops(&tree.bodies[*b])).collect();
         let height = |angles: &[f64]| {
@@ -204,7 +223,7 @@ impl Search<'_> {
                     at = body.origin + turn * (at - body.origin);
                 }
             }
-            at.y
+            up * at.y
         };
         let mut best = f64::INFINITY;
         for share in [None, Some(0.5), Some(0.2), Some(0.8)] {
@@ -231,7 +250,7 @@ impl Search<'_> {
                 }
             }
         }
-        best.min(point.y)
+        best.min(up * point.y)
     }
 
     fn stops(&self, body: &Body) -> [f64; 2] {
@@ -268,10 +287,15 @@ impl Search<'_> {
         let top = tips.iter().map(|t| t.mount.y).fold(f64::NEG_INFINITY, f64::max);
         let ground = tips.iter().map(|t| t.depth).fold(f64::INFINITY, f64::min);
         let reaches = |tip: &Tip| top - tip.depth >= DEPTH * (top - ground);
+        // Arms that stand on the ground beside legs are legs, whatever their bones are called.
+        let called = |tip: &Tip| self.names(tree, tip).iter().any(|name| is_leg(name));
+        let sole = tips.iter().filter(|tip| called(tip)).map(|tip| tip.point.y).fold(f64::INFINITY, f64::min);
+        let stands = |tip: &Tip| tip.point.y - sole <= STANDS * (tip.mount.y - sole);
         let (mut legs, mut others) = (Vec::new(), Vec::new());
         for tip in tips {
             let names = self.names(tree, &tip);
-            let called = names.iter().any(|name| is_leg(name));
+            let foreleg = names.iter().any(|name| is_of_foreleg(name)) && sole.is_finite() && stands(&tip);
+            let called = foreleg || called(&tip);
             if self.is_given(tree, &tip) {
                 legs.push((tip, true));
             } else if !reaches(&tip) {
@@ -290,7 +314,7 @@ impl Search<'_> {
         let mut legs: Vec<Tip> = legs.into_iter().map(|(tip, _)| tip).collect();
         // Legs come in pairs: a limb in the middle is none.
         let width = legs.iter().map(|t| t.point.z.abs()).fold(0.0, f64::max);
-        let middle: Vec<usize> = (0..legs.len()).filter(|k| legs[*k].point.z.abs() < 0.05 * width).collect();
+        let middle: Vec<usize> = (0..legs.len()).filter(|k| legs[*k].point.z.abs() < MIDDLE * width).collect();
         if let ([only], true) = (&middle[..], legs.len() > 2)
             && !self.is_given(tree, &legs[*only])
         {
@@ -321,7 +345,7 @@ impl Search<'_> {
         for (k, a) in legs.iter().enumerate() {
             for b in &legs[..k] {
                 // Legs that part below a waist have their feet on either side.
-                let sides = a.point.z * b.point.z < 0.0 && (a.point.z - b.point.z).abs() > 0.04 * scale;
+                let sides = a.point.z * b.point.z < 0.0 && (a.point.z - b.point.z).abs() > ASTRIDE * scale;
                 if a.path[0] != b.path[0] || sides || (a.point - b.point).norm() > ONE_LEG * scale {
                     continue;
                 }
@@ -366,7 +390,7 @@ impl Search<'_> {
         legs.iter().filter(|tip| tip.path.len() > 1).find_map(|tip| {
             let body = &tree.bodies[tip.body];
             let lever = tip.point - body.origin;
-            foot::find(self.model, body, self.options)?;
+            self.foot(tree, tip.body)?;
             let short = lever.x.hypot(lever.y) < 1e-3 * scale;
             short.then(|| self.one(body.joint.as_ref()?.joint, "the foot is where it turns")).flatten()
         })
@@ -410,16 +434,49 @@ impl Search<'_> {
         None
     }
 
+    /// A joint that slides, and is at zero at none of its places, where no leg hangs on it.
+    fn off_zero(&self, tree: &Tree, legs: &[Tip]) -> Option<Proposal> {
+        let slides = |index: &usize| {
+            let joint = &self.model.joints[*index];
+            let free = joint.slides && joint.at_rest() != 0.0 && !self.held.contains_key(index);
+            free && self.carried(tree, legs, joint.child) == 0
+        };
+        let joint = (0..self.model.joints.len()).find(slides)?;
+        self.one(
+            joint,
+            "no leg hangs on it, and its stops leave it no place nearer to 0 (--lock JOINT=PLACE holds it elsewhere)",
+        )
+    }
+
+    /// How many legs hang on a link.
+    fn carried(&self, tree: &Tree, tips: &[Tip], link: usize) -> usize {
+        let mut below = BTreeSet::new();
+        let mut open = vec![link];
+        while let Some(link) = open.pop() {
+            below.insert(link);
+            open.extend(self.skeleton.below[link].iter().map(|j| self.model.joints[*j].child));
+        }
+        let hangs = |tip: &&Tip| {
+            let foot = || self.foot(tree, tip.body).is_some_and(|foot| below.contains(&foot.link));
+            below.contains(&tree.bodies[tip.body].link) || foot()
+        };
+        tips.iter().filter(hangs).count()
+    }
+
     /// The legs, and what is in their way.
     fn settle(mut self, tree: Tree, tips: Vec<Tip>, faults: &mut Faults) -> Limbs {
         self.no_loops(&tree, &tips, faults);
         self.other_kinds(&tree, &tips, faults);
         let mut legs = Vec::new();
         let chains = tips.iter().map(|tip| tip.path.clone()).collect();
+        let reach = |tip: &Tip| {
+            let top = -self.depth(&tree, &tip.path, &tip.point, -1.0);
+            [tip.mount.y - tip.depth, top - tip.mount.y]
+        };
+        let reach = tips.iter().map(reach).collect();
         for tip in tips {
-            let body = &tree.bodies[tip.body];
-            let link = &self.model.links[body.link];
-            if let Some(foot) = foot::find(self.model, body, self.options) {
+            let link = &self.model.links[tree.bodies[tip.body].link];
+            if let Some(foot) = self.foot(&tree, tip.body) {
                 legs.push(Limb { chain: tip.path, foot });
                 continue;
             }
@@ -432,7 +489,7 @@ impl Search<'_> {
             let what = "no foot is on this link: nothing tells where it touches the ground";
             faults.add(Kind::NoFoot, Some(&link.place), what, remedy);
         }
-        Limbs { tree, legs, chains, notes: self.notes }
+        Limbs { tree, legs, chains, reach, notes: self.notes }
     }
 
     /// Chains that meet at their ends are linkages, whose last joint the file leaves out.
@@ -440,8 +497,8 @@ impl Search<'_> {
         let scale = depth_of(tips);
         for (k, a) in tips.iter().enumerate() {
             // Legs of a planar robot hang at one place too.
-            let meets =
-                |b: &&Tip| (a.point - b.point).norm() < 0.02 * scale && (a.mount - b.mount).norm() > 0.02 * scale;
+            let near = |p: Vector3<f64>, q: Vector3<f64>| (p - q).norm() < ONE_PLACE * scale;
+            let meets = |b: &&Tip| near(a.point, b.point) && !near(a.mount, b.mount);
             for b in tips[..k].iter().filter(meets) {
                 let [a, b] = [a, b].map(|t| &self.model.links[tree.bodies[t.body].link]);
                 let what =
@@ -466,21 +523,12 @@ impl Search<'_> {
                 }
                 JointKind::Other(kind) => format!("it is {kind}"),
             };
-            let mut below = BTreeSet::new();
-            let mut open = vec![joint.child];
-            while let Some(link) = open.pop() {
-                below.insert(link);
-                open.extend(self.skeleton.below[link].iter().map(|j| self.model.joints[*j].child));
+            let carried = self.carried(tree, tips, joint.child);
+            if self.held.contains_key(&index) {
+                continue;
             }
-            let carried = tips.iter().filter(|tip| {
-                below.contains(&tree.bodies[tip.body].link) || {
-                    let foot = foot::find(self.model, &tree.bodies[tip.body], self.options);
-                    foot.is_some_and(|foot| below.contains(&foot.link))
-                }
-            });
-            let carried = carried.count();
-            if carried == 0 || carried == tips.len() || self.held.contains_key(&index) {
-                if joint.kind == JointKind::Mimic && !self.held.contains_key(&index) {
+            if carried == 0 || carried == tips.len() {
+                if joint.kind == JointKind::Mimic {
                     what += ", and stays at 0 while that one moves (--lock JOINT=ANGLE holds it elsewhere)";
                 }
                 fixed.entry(what).or_default().push(format!("`{}`", joint.name));
@@ -517,20 +565,4 @@ fn depth_of(legs: &[Tip]) -> f64 {
     let top = legs.iter().map(|t| t.mount.y).fold(f64::NEG_INFINITY, f64::max);
     let ground = legs.iter().map(|t| t.depth).fold(f64::INFINITY, f64::min);
     (top - ground).max(0.0)
-}
-
-/// The angle nearest to zero within the stops.
-fn at_rest(model: &Model, joint: usize) -> f64 {
-    let joint = &model.joints[joint];
-    match joint.range {
-        Some([low, high]) if joint.kind == JointKind::Revolute && low <= high => 0.0f64.clamp(low, high),
-        _ => 0.0,
-    }
-}
-
-fn short_list(names: &[String]) -> String {
-    match names {
-        [first, second, third, _, ..] => format!("{first}, {second}, {third} and {} more", names.len() - 3),
-        _ => names.join(", "),
-    }
 }

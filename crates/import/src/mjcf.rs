@@ -1,23 +1,30 @@
 //! MJCF → [`Model`]: bodies, hinges, inertias (given, or those of the geoms), what drives the joints, and the classes from
 //! which all of them take their defaults.
 
-use super::fault::{Faults, Kind, Place};
-use super::model::{EARTH, Format, Friction, Joint, Kind as JointKind, Link, Mass, Model, Shape, Solid, Spring};
-use super::xml::{File, child, children, plain};
-use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
+use super::Rigid;
+use super::fault::{Faults, Kind};
+use super::model::{EARTH, Format, Friction, Joint, Kind as JointKind, Link, Mass, Model, Rotor, Shape, Solid, Spring};
+use super::xml::{File, child, children, name, plain};
+use nalgebra::{Isometry3, Matrix3, Rotation3, SymmetricEigen, Translation3, Unit, UnitQuaternion, Vector3};
+use piaffe_model::digits::digits;
 use roxmltree::Node;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
+use std::iter::Sum;
 
 /// kg/m³ of a geom that says nothing else.
 const DENSITY: f64 = 1000.0;
+
+/// How a file is had that says by itself what it leaves to MuJoCo's compiler.
+pub const SAVE: &str = "save what MuJoCo compiles of it, and import that: python -c 'import mujoco; s = mujoco.MjSpec.from_file(\"FILE\"); \
+                    s.compiler.saveinertial = True; s.compile(); print(s.to_xml())' > saved.xml";
 
 pub fn read(file: &File, faults: &mut Faults) -> Option<Model> {
     let root = file.root();
     let included: Vec<Node> = root.descendants().filter(|n| n.has_tag_name("include")).collect();
     for node in &included {
         let other = plain(node.attribute("file").unwrap_or("another file"));
-        let remedy = format!("import {other} if that is the robot; else put what it has into this file");
+        let remedy = format!("import {other} if that is the robot; else {SAVE}");
         faults.add(
             Kind::Format,
             Some(&file.place(*node)),
@@ -27,15 +34,22 @@ pub fn read(file: &File, faults: &mut Faults) -> Option<Model> {
     }
     for tag in ["replicate", "attach", "composite", "flexcomp"] {
         for node in root.descendants().filter(|n| n.has_tag_name(tag)) {
-            let remedy = "save the compiled model and import that: mujoco.mj_saveLastXML(\"robot.xml\", model)";
-            faults.add(Kind::Format, Some(&file.place(node)), "it makes bodies that are not in the file", remedy);
+            faults.add(Kind::Format, Some(&file.place(node)), "it makes bodies that are not in the file", SAVE);
         }
+    }
+    // Where no body is put anywhere, the world's coordinates are those of the bodies.
+    let poses = ["pos", "quat", "euler", "axisangle", "xyaxes", "zaxis"];
+    let put = |n: &Node| n.has_tag_name("body") && poses.iter().any(|pose| n.has_attribute(*pose));
+    let global = |n: &Node| n.attribute("coordinate") == Some("global") && root.descendants().any(|body| put(&body));
+    for node in children(root, "compiler").filter(global) {
+        let remedy = "load and save it with MuJoCo 2.3.3 or older, and import what was saved";
+        faults.add(Kind::Format, Some(&file.place(node)), "its coordinates are the world's, not the bodies'", remedy);
     }
     if !faults.is_empty() {
         return None;
     }
     let mut reader = Reader::new(file, faults);
-    let Some(trunk) = reader.trunk(root) else {
+    let Some((trunk, others)) = reader.trunk(root) else {
         let remedy = "give a file with <body>s in its <worldbody>";
         faults.add(Kind::Format, Some(&file.place(root)), "no body of this file has joints on it", remedy);
         return None;
@@ -43,33 +57,62 @@ pub fn read(file: &File, faults: &mut Faults) -> Option<Model> {
     reader.bodies(trunk);
     reader.actuators(root);
     reader.equalities(root);
-    reader.settle_mass(root);
-    let gravity = reader.gravity(root);
+    reader.settle_mass(others);
+    let (gravity, up) = reader.gravity(root);
+    reader.say();
     let Reader { links, joints, mut notes, .. } = reader;
     if child(root, "tendon").is_some() {
         notes.push("tendons are dropped".into());
     }
     let name = root.attribute("model").map(plain).filter(|name| !name.is_empty()).unwrap_or_else(|| "robot".into());
-    Some(Model { name, format: Format::Mjcf, links, joints, gravity, notes })
+    Some(Model { name, format: Format::Mjcf, links, joints, gravity, up, notes })
 }
 
 /// Attributes that elements of a class take where they have none of their own.
+#[derive(Default)]
 struct Class<'a, 't> {
-    above: Option<String>,
-    elements: BTreeMap<String, Node<'a, 't>>,
+    /// One that was found before: classes hang on each other without circles.
+    above: Option<usize>,
+    /// Several may say something of all actuators; the last one counts.
+    elements: BTreeMap<&'static str, Vec<Node<'a, 't>>>,
+}
+
+/// The class of all elements that have no other one, whatever it is called.
+const MAIN: usize = 0;
+
+/// What MuJoCo's compiler makes of the masses of bodies.
+struct Compiler {
+    /// Whether the geoms give inertias: instead of <inertial>, only where there is none, or never.
+    from_geoms: Option<bool>,
+    /// Of the geoms that do.
+    groups: Option<[f64; 2]>,
+    /// The least mass and moments of any body; kg, kg·m².
+    least: [f64; 2],
+    /// Whether moments that no body has become their mean.
+    balance: bool,
+    /// Of all bodies together, kg.
+    total: Option<f64>,
 }
 
 struct Reader<'a, 't, 'f> {
     file: &'a File<'t>,
     faults: &'f mut Faults,
-    classes: BTreeMap<String, Class<'a, 't>>,
+    classes: Vec<Class<'a, 't>>,
+    class_names: BTreeMap<&'a str, usize>,
     /// rad in one unit of the file's angles.
     angle: f64,
     eulers: String,
     autolimits: bool,
-    from_geoms: bool,
+    compiler: Compiler,
+    /// The trunk in the world.
+    trunk_turn: UnitQuaternion<f64>,
     links: Vec<Link>,
     joints: Vec<Joint>,
+    /// Bodies with a mass and no inertia, and those whose moments were balanced.
+    points: Vec<String>,
+    balanced: Vec<String>,
+    /// Joints whose springs or dampers are not in proportion.
+    curved: Vec<String>,
     notes: Vec<String>,
 }
 
@@ -78,7 +121,7 @@ struct Reader<'a, 't, 'f> {
 struct Styled<'a, 't> {
     node: Node<'a, 't>,
     tag: &'static str,
-    class: String,
+    class: usize,
 }
 
 /// A body that is yet to be read.
@@ -87,58 +130,117 @@ struct Waiting<'a, 't> {
     parent: Option<usize>,
     /// Of the <frame>s around it.
     frame: Isometry3<f64>,
-    class: String,
+    class: usize,
 }
 
 impl<'a, 't, 'f> Reader<'a, 't, 'f> {
     fn new(file: &'a File<'t>, faults: &'f mut Faults) -> Self {
         let root = file.root();
-        let said = |key: &str| children(root, "compiler").filter_map(|c| c.attribute(key)).last();
-        let mut classes = BTreeMap::new();
-        let mut open: Vec<(Node, Option<String>)> = children(root, "default").map(|n| (n, None)).collect();
-        while let Some((node, above)) = open.pop() {
-            let name = node.attribute("class").unwrap_or("main").to_string();
-            let mut elements = BTreeMap::new();
+        let said = |key: &str| children(root, "compiler").filter(|c| c.has_attribute(key)).last();
+        let word = |key: &str| said(key).and_then(|c| c.attribute(key));
+        let number = |key: &str, faults: &mut Faults| said(key).and_then(|c| file.number(c, key, faults));
+        let compiler = Compiler {
+            from_geoms: match word("inertiafromgeom") {
+                Some("true") => Some(true),
+                Some("false") => Some(false),
+                _ => None,
+            },
+            groups: said("inertiagrouprange").and_then(|c| file.numbers(c, "inertiagrouprange", faults)),
+            least: ["boundmass", "boundinertia"].map(|key| number(key, faults).unwrap_or(0.0)),
+            balance: word("balanceinertia") == Some("true"),
+            total: number("settotalmass", faults).filter(|total| *total > 0.0),
+        };
+        let mut classes = vec![Class::default()];
+        let mut class_names = BTreeMap::new();
+        let mut open: Vec<(Node, usize)> = children(root, "default").map(|n| (n, MAIN)).collect();
+        open.iter().filter_map(|(n, _)| n.attribute("class")).for_each(|name| {
+            class_names.insert(name, MAIN);
+        });
+        class_names.insert("main", MAIN);
+        open.reverse();
+        while let Some((node, own)) = open.pop() {
             for element in node.children().filter(Node::is_element) {
                 match element.tag_name().name() {
-                    "default" => open.push((element, Some(name.clone()))),
-                    tag => {
-                        elements.insert(tag_of(tag).to_string(), element);
+                    "default" => {
+                        let named = element.attribute("class");
+                        let known = named.and_then(|name| class_names.get(name).copied());
+                        let class = known.unwrap_or_else(|| {
+                            classes.push(Class { above: Some(own), ..Class::default() });
+                            classes.len() - 1
+                        });
+                        class_names.extend(named.map(|name| (name, class)));
+                        open.push((element, class));
                     }
+                    tag => classes[own].elements.entry(tag_of(tag)).or_default().push(element),
                 }
             }
-            classes.insert(name, Class { above, elements });
         }
         Reader {
             file,
             faults,
             classes,
-            angle: if said("angle") == Some("radian") { 1.0 } else { PI / 180.0 },
-            eulers: said("eulerseq").unwrap_or("xyz").to_string(),
-            autolimits: said("autolimits") != Some("false"),
-            from_geoms: said("inertiafromgeom") == Some("true"),
+            class_names,
+            angle: if word("angle") == Some("radian") { 1.0 } else { PI / 180.0 },
+            eulers: word("eulerseq").unwrap_or("xyz").to_string(),
+            autolimits: word("autolimits") != Some("false"),
+            compiler,
+            trunk_turn: UnitQuaternion::identity(),
             links: Vec::new(),
             joints: Vec::new(),
+            points: Vec::new(),
+            balanced: Vec::new(),
+            curved: Vec::new(),
             notes: Vec::new(),
         }
     }
 
+    /// The class that an attribute names, or else the one that is there.
+    fn class(&mut self, node: Node<'a, 't>, attribute: &str, otherwise: usize) -> usize {
+        let Some(named) = node.attribute(attribute) else { return otherwise };
+        self.class_names.get(named).copied().unwrap_or_else(|| {
+            let near = super::words::nearest(named, self.class_names.keys().copied());
+            let remedy = near.map_or("name a class of <default>".into(), |near| format!("did you mean `{near}`?"));
+            let what = format!("there is no class `{}` of defaults", plain(named));
+            self.faults.add(Kind::Missing, Some(&self.file.place(node)), what, remedy);
+            otherwise
+        })
+    }
+
+    /// The elements that have an attribute, with what it is: the class above all first, the element itself last.
+    fn all(&self, of: &Styled<'a, 't>, attribute: &str) -> Vec<(Node<'a, 't>, &'a str)> {
+        let said = |node: &Node<'a, 't>| node.attribute(attribute).map(|value| (*node, value));
+        let mut found: Vec<(Node, &str)> = said(&of.node).into_iter().collect();
+        let mut class = Some(of.class);
+        while let Some(here) = class.and_then(|c| self.classes.get(c)) {
+            found.extend(here.elements.get(of.tag).into_iter().flatten().rev().filter_map(said));
+            class = here.above;
+        }
+        found.reverse();
+        found
+    }
+
     /// The value of an attribute and the element that gives it: the element itself, or its class, or a class above that.
-    fn find<'s>(&'s self, of: &'s Styled<'a, 't>, attribute: &str) -> Option<(Node<'a, 't>, &'a str)> {
-        if let Some(value) = of.node.attribute(attribute) {
-            return Some((of.node, value));
+    fn find(&self, of: &Styled<'a, 't>, attribute: &str) -> Option<(Node<'a, 't>, &'a str)> {
+        self.all(of, attribute).pop()
+    }
+
+    /// Numbers of which an element may give the first ones, and leave the others as its class has them.
+    fn overlaid(&mut self, of: &Styled<'a, 't>, attribute: &str) -> Option<Vec<f64>> {
+        let mut numbers: Vec<f64> = Vec::new();
+        for (node, text) in self.all(of, attribute) {
+            let given = self.file.list(node, attribute, text, self.faults)?;
+            numbers = given.iter().chain(numbers.get(given.len()..).unwrap_or_default()).copied().collect();
         }
-        let mut class = Some(of.class.as_str());
-        // Classes hang on each other without circles: each was found inside the one above.
-        while let Some(found) = class.and_then(|c| self.classes.get(c)) {
-            if let Some(node) = found.elements.get(of.tag)
-                && let Some(value) = node.attribute(attribute)
-            {
-                return Some((*node, value));
-            }
-            class = found.above.as_deref();
+        (!numbers.is_empty()).then_some(numbers)
+    }
+
+    /// Whether a range counts.
+    fn limited(&self, of: &Styled<'a, 't>, key: &str) -> bool {
+        match self.word(of, key) {
+            Some("true") => true,
+            Some("false") => false,
+            _ => self.autolimits,
         }
-        None
     }
 
     fn word(&self, of: &Styled<'a, 't>, attribute: &str) -> Option<&'a str> {
@@ -166,16 +268,16 @@ impl<'a, 't, 'f> Reader<'a, 't, 'f> {
         self.list(of, attribute)?.first().copied()
     }
 
-    fn styled(&self, node: Node<'a, 't>, class: &str) -> Styled<'a, 't> {
-        let class = node.attribute("class").unwrap_or(class).to_string();
+    fn styled(&mut self, node: Node<'a, 't>, class: usize) -> Styled<'a, 't> {
+        let class = self.class(node, "class", class);
         Styled { node, tag: tag_of(node.tag_name().name()), class }
     }
 
-    /// The body of the world that has most joints.
-    fn trunk(&mut self, root: Node<'a, 't>) -> Option<Waiting<'a, 't>> {
+    /// The body of the world that has most joints, and the others.
+    fn trunk(&mut self, root: Node<'a, 't>) -> Option<(Waiting<'a, 't>, Vec<Waiting<'a, 't>>)> {
         let mut found: Vec<(usize, Waiting)> = Vec::new();
         for world in children(root, "worldbody") {
-            for waiting in self.below(world, None, "main") {
+            for waiting in self.below(world, None, MAIN) {
                 let joints = waiting.node.descendants().filter(|n| n.has_tag_name("joint")).count();
                 found.push((joints, waiting));
             }
@@ -186,20 +288,20 @@ impl<'a, 't, 'f> Reader<'a, 't, 'f> {
         if !found.is_empty() {
             self.notes.push(format!("{} other bodies of the world are left out", found.len()));
         }
-        Some(trunk)
+        Some((trunk, found.into_iter().map(|(_, other)| other).collect()))
     }
 
     /// The bodies in an element, through the <frame>s around them.
-    fn below(&mut self, node: Node<'a, 't>, parent: Option<usize>, class: &str) -> Vec<Waiting<'a, 't>> {
+    fn below(&mut self, node: Node<'a, 't>, parent: Option<usize>, class: usize) -> Vec<Waiting<'a, 't>> {
         let mut found = Vec::new();
-        let mut open = vec![(node, Isometry3::identity(), class.to_string())];
+        let mut open = vec![(node, Isometry3::identity(), class)];
         while let Some((node, frame, class)) = open.pop() {
             for inner in node.children().filter(Node::is_element) {
-                let class = inner.attribute("childclass").unwrap_or(&class).to_string();
+                let class = self.class(inner, "childclass", class);
                 match inner.tag_name().name() {
                     "body" => found.push(Waiting { node: inner, parent, frame, class }),
                     "frame" => {
-                        let styled = Styled { node: inner, tag: "frame", class: class.clone() };
+                        let styled = Styled { node: inner, tag: "frame", class };
                         let own = self.pose(&styled);
                         open.push((inner, frame * own, class));
                     }
@@ -211,18 +313,18 @@ impl<'a, 't, 'f> Reader<'a, 't, 'f> {
     }
 
     /// The elements of one name in a body, through the <frame>s around them.
-    fn within(&mut self, node: Node<'a, 't>, tag: &str, class: &str) -> Vec<(Styled<'a, 't>, Isometry3<f64>)> {
+    fn within(&mut self, node: Node<'a, 't>, tag: &str, class: usize) -> Vec<(Styled<'a, 't>, Isometry3<f64>)> {
         let mut found = Vec::new();
-        let mut open = vec![(node, Isometry3::identity(), class.to_string())];
+        let mut open = vec![(node, Isometry3::identity(), class)];
         while let Some((node, frame, class)) = open.pop() {
             for inner in node.children().filter(Node::is_element) {
                 match inner.tag_name().name() {
                     "frame" => {
-                        let class = inner.attribute("childclass").unwrap_or(&class).to_string();
-                        let own = self.pose(&Styled { node: inner, tag: "frame", class: class.clone() });
+                        let class = self.class(inner, "childclass", class);
+                        let own = self.pose(&Styled { node: inner, tag: "frame", class });
                         open.push((inner, frame * own, class));
                     }
-                    name if name == tag => found.push((self.styled(inner, &class), frame)),
+                    name if name == tag => found.push((self.styled(inner, class), frame)),
                     _ => {}
                 }
             }
@@ -234,30 +336,31 @@ impl<'a, 't, 'f> Reader<'a, 't, 'f> {
         let mut open = vec![trunk];
         while let Some(Waiting { node, parent, frame, class }) = open.pop() {
             let place = self.file.place(node);
-            let name = node.attribute("name").map(plain).filter(|name| !name.is_empty());
-            let name = name.unwrap_or_else(|| format!("body{}", self.links.len() + 1));
-            let geoms = self.within(node, "geom", &class);
-            let masses = self.masses(node, &place, &geoms);
+            let named = node.attribute("name").map(name).filter(|name| !name.is_empty());
+            let name = named.unwrap_or_else(|| format!("body{}", self.links.len() + 1));
+            let geoms = self.within(node, "geom", class);
+            let masses = self.masses(node, &name, &geoms);
             let shapes = geoms.iter().filter_map(|(geom, at)| self.shape(geom, at)).collect();
             let link = Link { name, place, masses, shapes };
-            let own = self.pose(&Styled { node, tag: "body", class: class.clone() });
-            let mut joints = self.within(node, "joint", &class);
-            joints.extend(self.within(node, "freejoint", &class));
+            let own = self.pose(&Styled { node, tag: "body", class });
+            let mut joints = self.within(node, "joint", class);
+            joints.extend(self.within(node, "freejoint", class));
             let last = match parent {
                 Some(parent) => self.chain(parent, frame * own, link, &joints),
                 None => {
-                    let put = |(joint, _): &(Styled, Isometry3<f64>)| {
-                        joint.tag == "freejoint" || joint.node.attribute("type") == Some("free")
+                    let free = |(joint, _): &(Styled<'a, 't>, Isometry3<f64>)| {
+                        joint.tag == "freejoint" || self.word(joint, "type") == Some("free")
                     };
-                    if joints.iter().any(|joint| !put(joint)) {
+                    if !joints.iter().all(free) {
                         let what = format!("the joints by which `{}` moves in the world are dropped", link.name);
                         self.notes.push(what);
                     }
+                    self.trunk_turn = (frame * own).rotation;
                     self.links.push(link);
                     0
                 }
             };
-            let mut below = self.below(node, Some(last), &class);
+            let mut below = self.below(node, Some(last), class);
             below.reverse();
             open.extend(below);
         }
@@ -281,6 +384,7 @@ impl<'a, 't, 'f> Reader<'a, 't, 'f> {
                 name: format!("{name}_is_fixed"),
                 place,
                 kind: JointKind::Fixed,
+                slides: false,
                 parent,
                 child,
                 frame,
@@ -292,6 +396,7 @@ impl<'a, 't, 'f> Reader<'a, 't, 'f> {
                 gear: None,
                 rotor: None,
                 spring: Spring::default(),
+                spring_is_derived: false,
                 friction: Friction::default(),
             });
             return child;
@@ -322,15 +427,13 @@ impl<'a, 't, 'f> Reader<'a, 't, 'f> {
         let anchor = around * nalgebra::Point3::from(self.numbers(of, "pos").unwrap_or([0.0; 3]));
         let axis = around.rotation * Vector3::from(self.numbers(of, "axis").unwrap_or([0.0, 0.0, 1.0]));
         let range: Option<[f64; 2]> = self.numbers(of, "range");
-        let limited = match self.word(of, "limited") {
-            Some("true") => true,
-            Some("false") => false,
-            _ => self.autolimits && range.is_some(),
-        };
+        let range = range.filter(|_| self.limited(of, "limited"));
+        let slides = self.word(of, "type") == Some("slide");
+        let unit = if slides { 1.0 } else { self.angle };
         let reference = self.number(of, "ref").unwrap_or(0.0);
-        let range = range.filter(|_| limited).map(|r| r.map(|x| (x - reference) * self.angle));
-        let name = of.node.attribute("name").map(plain).filter(|name| !name.is_empty());
-        let name = name.unwrap_or_else(|| format!("{}_joint", self.links[child].name));
+        let range = range.map(|r| r.map(|x| (x - reference) * unit));
+        let named = of.node.attribute("name").map(name).filter(|name| !name.is_empty());
+        let name = named.unwrap_or_else(|| format!("{}_joint", self.links[child].name));
         if reference != 0.0 {
             self.notes.push(format!("angles of `{name}` count from the pose of the file (its ref is left out)"));
         }
@@ -342,17 +445,23 @@ impl<'a, 't, 'f> Reader<'a, 't, 'f> {
             other => JointKind::Other(plain(other)),
         };
         let force: Option<[f64; 2]> = self.numbers(of, "actuatorfrcrange");
+        let force = force.filter(|_| self.limited(of, "actuatorfrclimited"));
         let armature = self.number(of, "armature").filter(|a| *a > 0.0);
-        let [damping, coulomb] = ["damping", "frictionloss"].map(|key| self.number(of, key).unwrap_or_default());
-        let stiffness = self.number(of, "stiffness").unwrap_or_default();
-        let rest = (self.number(of, "springref").unwrap_or_default() - reference) * self.angle;
-        if self.word(of, "springdamper").is_some() {
-            self.notes.push(format!("`springdamper` of `{name}` is left out"));
-        }
+        let coulomb = self.number(of, "frictionloss").unwrap_or_default();
+        let [damping, stiffness] = ["damping", "stiffness"].map(|key| {
+            let all = self.list(of, key).unwrap_or_default();
+            if all.iter().skip(1).any(|x| *x != 0.0) {
+                self.curved.push(format!("`{name}`"));
+            }
+            all.first().copied().unwrap_or_default()
+        });
+        let rest = (self.number(of, "springref").unwrap_or_default() - reference) * unit;
+        let derived = self.list(of, "springdamper").unwrap_or_default();
         self.joints.push(Joint {
             name,
             place,
             kind,
+            slides,
             parent,
             child,
             frame: body * Translation3::from(anchor.coords),
@@ -362,8 +471,9 @@ impl<'a, 't, 'f> Reader<'a, 't, 'f> {
             effort: force.map(|[lo, hi]| hi.min(-lo)).filter(|f| *f > 0.0),
             velocity: None,
             gear: None,
-            rotor: armature,
+            rotor: armature.map(Rotor::AtJoint),
             spring: Spring { stiffness, rest },
+            spring_is_derived: derived.len() == 2 && derived.iter().all(|x| *x > 0.0),
             friction: Friction { damping, coulomb },
         });
     }
@@ -371,59 +481,69 @@ impl<'a, 't, 'f> Reader<'a, 't, 'f> {
     /// What drives the joints: gears, and the greatest forces.
     fn actuators(&mut self, root: Node<'a, 't>) {
         let all: Vec<Node> = children(root, "actuator").flat_map(|a| a.children().filter(Node::is_element)).collect();
+        let mut drives: BTreeMap<usize, Vec<Drive>> = BTreeMap::new();
         for node in all {
-            let of = self.styled(node, "main");
-            let kind = node.tag_name().name();
-            let Some(joint) = self.word(&of, "joint").or(self.word(&of, "jointinparent")).map(plain) else { continue };
-            let place = self.file.place(node);
+            let of = self.styled(node, MAIN);
+            let Some(joint) = self.word(&of, "joint").or(self.word(&of, "jointinparent")).map(name) else { continue };
             let Some(index) = self.joints.iter().position(|j| j.name == joint) else {
                 let near = super::words::nearest(&joint, self.joints.iter().map(|j| j.name.as_str()));
                 let remedy = near.map_or("name a joint of the file".into(), |near| format!("did you mean `{near}`?"));
-                self.faults.add(
-                    Kind::Missing,
-                    Some(&place),
-                    format!("it drives `{joint}`, which does not exist"),
-                    remedy,
-                );
+                let what = format!("it drives `{}`, which does not exist", plain(&joint));
+                self.faults.add(Kind::Missing, Some(&self.file.place(node)), what, remedy);
                 continue;
             };
-            let gear = self.number(&of, "gear").unwrap_or(1.0).abs();
-            let most = |range: Option<[f64; 2]>| range.map(|[lo, hi]| hi.min(-lo)).filter(|f| *f > 0.0);
-            let limited = |reader: &Self, key: &str| reader.word(&of, key) != Some("false");
-            let force = self.numbers(&of, "forcerange").filter(|_| limited(self, "forcelimited"));
-            let control = self.numbers(&of, "ctrlrange").filter(|_| limited(self, "ctrllimited"));
-            let gain = match kind {
-                "motor" => Some(1.0),
-                "general" if self.word(&of, "biastype").is_none_or(|b| b == "none") => {
-                    Some(self.number(&of, "gainprm").unwrap_or(1.0))
-                }
-                _ => None,
-            };
-            let control = most(control).zip(gain).map(|(c, gain)| c * gain.abs()).filter(|c| *c > 0.0);
-            let force = match (most(force), control) {
+            let drive = self.drive(&of);
+            drives.entry(index).or_default().push(drive);
+        }
+        for (index, drives) in drives {
+            // One with a gear of 0 drives nothing.
+            let drives: Vec<Drive> = drives.into_iter().filter(|drive| drive.gear != Some(0.0)).collect();
+            let joint = &mut self.joints[index];
+            joint.gear = drives.iter().find_map(|drive| drive.gear).map(f64::abs);
+            if let Some(gear) = joint.gear
+                && drives.iter().any(|drive| drive.gear.unwrap_or(1.0).abs() != gear)
+            {
+                let (name, gear) = (&joint.name, digits(gear));
+                self.notes.push(format!(
+                    "`{name}` has actuators with several gears: that of its motor is taken to be {gear}"
+                ));
+            }
+            // What drives a joint together adds up; if one of them has no limit, the sum has none.
+            let sum = drives.iter().map(|drive| drive.torque).sum::<Option<Torque>>();
+            let torque = sum.map(|Torque([low, high])| high.min(-low)).filter(|most| *most > 0.0 && most.is_finite());
+            joint.effort = match (joint.effort, torque) {
                 (Some(a), Some(b)) => Some(a.min(b)),
                 (a, b) => a.or(b),
             };
-            let joint = &mut self.joints[index];
-            if gear > 0.0 {
-                joint.gear = Some(gear);
-                let torque = force.map(|f| f * gear);
-                joint.effort = match (joint.effort, torque) {
-                    (Some(a), Some(b)) => Some(a.min(b)),
-                    (a, b) => a.or(b),
-                };
+        }
+    }
+
+    fn drive(&mut self, of: &Styled<'a, 't>) -> Drive {
+        let gear = self.number(of, "gear");
+        let force = self.numbers::<2>(of, "forcerange").filter(|_| self.limited(of, "forcelimited"));
+        let control = self.numbers::<2>(of, "ctrlrange").filter(|_| self.limited(of, "ctrllimited"));
+        let gain = match of.node.tag_name().name() {
+            "motor" => Some(1.0),
+            "general" if self.word(of, "biastype").is_none_or(|b| b == "none") => {
+                Some(self.number(of, "gainprm").unwrap_or(1.0))
             }
-        }
-        // The armature is at the joint, the specification's rotor at the motor.
-        for joint in &mut self.joints {
-            let gear = joint.gear.unwrap_or(1.0);
-            joint.rotor = joint.rotor.map(|armature| armature / (gear * gear));
-        }
+            _ => None,
+        };
+        let control = control.zip(gain).map(|(range, gain)| Torque(range).times(gain));
+        let force = match (force.map(Torque), control) {
+            (Some(Torque([a, b])), Some(Torque([c, d]))) => Some(Torque([a.max(c), b.min(d)])),
+            (a, b) => a.or(b),
+        };
+        Drive { gear, torque: force.map(|force| force.times(gear.unwrap_or(1.0))) }
     }
 
     fn equalities(&mut self, root: Node<'a, 't>) {
         let all: Vec<Node> = children(root, "equality").flat_map(|e| e.children().filter(Node::is_element)).collect();
-        for node in all.into_iter().filter(|n| n.attribute("active") != Some("false")) {
+        for node in all {
+            let class = self.class(node, "class", MAIN);
+            if self.word(&Styled { node, tag: "equality", class }, "active") == Some("false") {
+                continue;
+            }
             match node.tag_name().name() {
                 "connect" | "weld" => {
                     let remedy = "take a file in which each leg is one chain: a linkage cannot be described";
@@ -431,7 +551,7 @@ impl<'a, 't, 'f> Reader<'a, 't, 'f> {
                     self.faults.add(Kind::Loop, Some(&place), "links that hang on each other in a loop", remedy);
                 }
                 "joint" => {
-                    let follower = node.attribute("joint1").map(plain);
+                    let follower = node.attribute("joint1").map(name);
                     for joint in self.joints.iter_mut().filter(|j| Some(&j.name) == follower.as_ref()) {
                         joint.kind = JointKind::Mimic;
                     }
@@ -441,107 +561,165 @@ impl<'a, 't, 'f> Reader<'a, 't, 'f> {
         }
     }
 
-    /// Its size, m/s²; none where the file has no weight.
-    fn gravity(&mut self, root: Node<'a, 't>) -> Option<f64> {
+    /// Its size, m/s², none where the file has no weight; and against where it points in the trunk's frame.
+    fn gravity(&mut self, root: Node<'a, 't>) -> (Option<f64>, Option<Vector3<f64>>) {
         let given = children(root, "option").filter(|option| option.has_attribute("gravity")).last();
-        let Some(option) = given else { return Some(EARTH) };
-        let of = Styled { node: option, tag: "option", class: "main".into() };
-        let down = Vector3::from(self.numbers::<3>(&of, "gravity")?);
+        let down = match given {
+            Some(option) => self.file.numbers(option, "gravity", self.faults).map(Vector3::from),
+            None => Some(Vector3::new(0.0, 0.0, -EARTH)),
+        };
+        let Some(down) = down else { return (None, None) };
         let size = down.norm();
         if size == 0.0 {
             self.notes.push("the file has no gravity".into());
-            return None;
+            return (None, None);
         }
         if down.normalize().iter().all(|along| along.abs() < 0.999) {
             self.notes.push(format!("gravity is oblique in the file: {size} m/s² are taken to point down"));
+            return (Some(size), None);
         }
-        Some(size)
+        (Some(size), Some(self.trunk_turn.inverse() * -down.normalize()))
     }
 
-    fn settle_mass(&mut self, root: Node<'a, 't>) {
-        let Some(total) = children(root, "compiler").find_map(|c| c.attribute("settotalmass")?.parse::<f64>().ok())
-        else {
-            return;
-        };
-        let sum: f64 = self.links.iter().flat_map(|l| &l.masses).map(|m| m.mass).sum();
-        if total > 0.0 && sum > 0.0 {
+    /// All masses are scaled to what the file says that they are together, those of the other bodies too.
+    fn settle_mass(&mut self, others: Vec<Waiting<'a, 't>>) {
+        let Some(total) = self.compiler.total else { return };
+        let mut sum: f64 = self.links.iter().flat_map(|l| &l.masses).map(|m| m.mass).sum();
+        let mut open = others;
+        while let Some(Waiting { node, class, .. }) = open.pop() {
+            let geoms = self.within(node, "geom", class);
+            sum += self.masses(node, &name_of(node), &geoms).iter().map(|m| m.mass).sum::<f64>();
+            open.extend(self.below(node, None, class));
+        }
+        if sum > 0.0 {
+            let share = total / sum;
             for mass in self.links.iter_mut().flat_map(|l| &mut l.masses) {
-                mass.mass *= total / sum;
-                mass.inertia *= total / sum;
+                mass.mass *= share;
+                mass.inertia *= share;
             }
+            self.notes.push(format!("all masses are scaled to {} kg together, as the file says", digits(total)));
         }
     }
 
-    /// The masses of a body: its <inertial>, or those of its geoms.
-    fn masses(&mut self, node: Node<'a, 't>, place: &Place, geoms: &[(Styled<'a, 't>, Isometry3<f64>)]) -> Vec<Mass> {
-        if let Some(inertial) = child(node, "inertial").filter(|_| !self.from_geoms) {
-            let of = Styled { node: inertial, tag: "inertial", class: "main".into() };
-            let frame = self.pose(&of);
-            let at = self.file.place(inertial);
-            let Some(mass) = self.number(&of, "mass").filter(|m| *m >= 0.0) else {
-                self.faults.add(Kind::Inertia, Some(&at), "it has no mass", "write mass=\"…\" in kg");
-                return Vec::new();
-            };
-            let inertia = if let Some(d) = self.numbers::<3>(&of, "diaginertia") {
-                Matrix3::from_diagonal(&Vector3::from(d))
-            } else if let Some([xx, yy, zz, xy, xz, yz]) = self.numbers(&of, "fullinertia") {
-                Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
-            } else {
-                Matrix3::zeros()
-            };
-            return vec![Mass { mass, frame, inertia }];
-        }
+    /// The masses of a body: its <inertial>, or those of its geoms, as the compiler leaves them.
+    fn masses(&mut self, node: Node<'a, 't>, name: &str, geoms: &[(Styled<'a, 't>, Isometry3<f64>)]) -> Vec<Mass> {
+        let given = child(node, "inertial");
+        let masses = match (given, self.compiler.from_geoms) {
+            (Some(inertial), Some(true)) => {
+                let of_geoms = self.masses_of_geoms(name, geoms);
+                if of_geoms.is_empty() { self.given_mass(inertial, name) } else { of_geoms }
+            }
+            (Some(inertial), _) => self.given_mass(inertial, name),
+            (None, Some(false)) => Vec::new(),
+            (None, _) => self.masses_of_geoms(name, geoms),
+        };
+        self.compiled(masses, name)
+    }
+
+    fn given_mass(&mut self, inertial: Node<'a, 't>, name: &str) -> Vec<Mass> {
+        let of = Styled { node: inertial, tag: "inertial", class: MAIN };
+        let frame = self.pose(&of);
+        let at = self.file.place(inertial);
+        let Some(mass) = self.number(&of, "mass").filter(|m| *m >= 0.0) else {
+            self.faults.add(Kind::Inertia, Some(&at), "it has no mass", "write mass=\"…\" in kg");
+            return Vec::new();
+        };
+        let inertia = if let Some(d) = self.numbers::<3>(&of, "diaginertia") {
+            Matrix3::from_diagonal(&Vector3::from(d))
+        } else if let Some([xx, yy, zz, xy, xz, yz]) = self.numbers(&of, "fullinertia") {
+            Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
+        } else {
+            if mass > 0.0 && self.compiler.least[1] <= 0.0 {
+                self.points.push(format!("`{name}`"));
+            }
+            Matrix3::zeros()
+        };
+        vec![Mass { mass, frame, inertia }]
+    }
+
+    fn masses_of_geoms(&mut self, name: &str, geoms: &[(Styled<'a, 't>, Isometry3<f64>)]) -> Vec<Mass> {
         let mut masses = Vec::new();
         for (geom, around) in geoms {
-            let given = self.number(geom, "mass");
-            if given == Some(0.0) {
+            let group = self.number(geom, "group").unwrap_or(0.0);
+            if self.compiler.groups.is_some_and(|[first, last]| !(first..=last).contains(&group)) {
                 continue;
             }
-            let density = self.number(geom, "density").unwrap_or(DENSITY);
+            let (given, density) = (self.number(geom, "mass"), self.number(geom, "density").unwrap_or(DENSITY));
+            // Planes have no mass.
+            if given.unwrap_or(density) == 0.0 || self.word(geom, "type") == Some("plane") {
+                continue;
+            }
+            let place = self.file.place(geom.node);
             let Some((volume, unit, frame)) = self.volume(geom) else {
-                let place_of_geom = self.file.place(geom.node);
-                if density > 0.0 || given.is_some() {
-                    let remedy = "give the body an <inertial>, or save the compiled model and import that: mujoco.mj_saveLastXML";
-                    let what =
-                        format!("body `{}` has no <inertial>, and a mesh says nothing here", plain(&name_of(node)));
-                    self.faults.add(Kind::Inertia, Some(&place_of_geom), what, remedy);
+                let is_mesh = self.find(geom, "mesh").is_some() || !SOLIDS.contains(&self.kind_of(geom));
+                if is_mesh {
+                    let what = format!("body `{name}` has no <inertial>, and a mesh says nothing here");
+                    let remedy = format!("give the body an <inertial>; or {SAVE}");
+                    self.faults.add(Kind::Inertia, Some(&place), what, remedy);
+                } else {
+                    let what = format!("its size is not known, of which body `{name}` has its mass");
+                    self.faults.add(
+                        Kind::Inertia,
+                        Some(&place),
+                        what,
+                        "write size=\"…\" in m, all its numbers above 0",
+                    );
                 }
                 continue;
             };
             let mass = given.unwrap_or(density * volume);
             masses.push(Mass { mass, frame: around * frame, inertia: unit * mass });
         }
-        let _ = place;
         masses
+    }
+
+    /// A body's masses as one, with the least that the file admits, and moments balanced where it says so.
+    fn compiled(&mut self, masses: Vec<Mass>, name: &str) -> Vec<Mass> {
+        let Compiler { least: [mass, moment], balance, .. } = self.compiler;
+        if mass <= 0.0 && moment <= 0.0 && !balance {
+            return masses;
+        }
+        let whole = masses.iter().map(Mass::rigid).fold(Rigid::NOTHING, |sum, next| sum.with(&next));
+        if !whole.inertia.iter().all(|x| x.is_finite()) {
+            return masses;
+        }
+        let eigen = SymmetricEigen::new(whole.inertia);
+        let mut moments = eigen.eigenvalues.map(|own| own.max(moment));
+        if balance && moments.max() > 0.5 * moments.sum() * (1.0 + 1e-12) {
+            moments = Vector3::repeat(moments.mean());
+            self.balanced.push(format!("`{name}`"));
+        }
+        let axes = eigen.eigenvectors;
+        let inertia = axes * Matrix3::from_diagonal(&moments) * axes.transpose();
+        vec![Mass { mass: whole.mass.max(mass), frame: Translation3::from(whole.com).into(), inertia }]
+    }
+
+    fn say(&mut self) {
+        let all = [&self.points, &self.balanced, &self.curved];
+        let [points, balanced, curved] = all.map(|names| super::words::short_list(names));
+        if !points.is_empty() {
+            self.notes.push(super::words::point_masses(&points));
+        }
+        if !balanced.is_empty() {
+            self.notes.push(format!(
+                "the moments of inertia of {balanced} become their mean, for they are no body's (balanceinertia of the file)"
+            ));
+        }
+        if !curved.is_empty() {
+            self.notes.push(format!(
+                "of `stiffness` and `damping` of {curved} the first number is taken: what is not in proportion is left out"
+            ));
+        }
     }
 
     /// Volume, inertia of 1 kg and frame of a geom that has them.
     fn volume(&mut self, of: &Styled<'a, 't>) -> Option<(f64, Matrix3<f64>, Isometry3<f64>)> {
-        if self.word(of, "type") == Some("ellipsoid") {
-            let [a, b, c] = self.numbers(of, "size")?;
-            let unit = Vector3::new(b * b + c * c, a * a + c * c, a * a + b * b) / 5.0;
-            return Some((4.0 / 3.0 * PI * a * b * c, Matrix3::from_diagonal(&unit), self.pose(of)));
-        }
-        let Shape { frame, solid } = self.solid(of)?;
-        let (volume, [x, y, z]) = match solid {
-            Solid::Sphere { radius } => (4.0 / 3.0 * PI * radius.powi(3), [0.4 * radius * radius; 3]),
-            Solid::Box { half: [a, b, c] } => {
-                (8.0 * a * b * c, [b * b + c * c, a * a + c * c, a * a + b * b].map(|s| s / 3.0))
-            }
-            Solid::Cylinder { radius: r, half: h } => {
-                let across = r * r / 4.0 + h * h / 3.0;
-                (2.0 * PI * r * r * h, [across, across, r * r / 2.0])
-            }
-            Solid::Capsule { radius: r, half: h } => {
-                let (tube, ball) = (2.0 * PI * r * r * h, 4.0 / 3.0 * PI * r.powi(3));
-                let volume = tube + ball;
-                let (t, b) = (tube / volume, ball / volume);
-                let along = t * r * r / 2.0 + b * 0.4 * r * r;
-                let across = t * (r * r / 4.0 + h * h / 3.0) + b * (0.4 * r * r + h * h + 0.75 * h * r);
-                (volume, [across, across, along])
-            }
+        let shape = self.solid(of)?;
+        let [volume, x, y, z] = match self.word(of, "shellinertia") == Some("true") {
+            true => shell(&shape.solid),
+            false => full(&shape.solid),
         };
-        Some((volume, Matrix3::from_diagonal(&Vector3::new(x, y, z)), frame))
+        Some((volume, Matrix3::from_diagonal(&Vector3::new(x, y, z)), shape.frame)).filter(|_| volume > 0.0)
     }
 
     /// What of a geom can touch the ground.
@@ -551,12 +729,16 @@ impl<'a, 't, 'f> Reader<'a, 't, 'f> {
         Some(Shape { frame: around * shape.frame, solid: shape.solid })
     }
 
+    fn kind_of(&self, of: &Styled<'a, 't>) -> &'a str {
+        self.word(of, "type").unwrap_or("sphere")
+    }
+
     fn solid(&mut self, of: &Styled<'a, 't>) -> Option<Shape> {
-        let kind = self.word(of, "type").unwrap_or("sphere");
-        if !["sphere", "capsule", "cylinder", "box"].contains(&kind) {
+        let kind = self.kind_of(of);
+        if !SOLIDS.contains(&kind) {
             return None;
         }
-        let size = self.list(of, "size")?;
+        let size = self.overlaid(of, "size")?;
         let ends = self.numbers::<6>(of, "fromto").filter(|_| kind != "sphere");
         let (frame, half) = match ends {
             Some([a, b, c, x, y, z]) => {
@@ -568,11 +750,14 @@ impl<'a, 't, 'f> Reader<'a, 't, 'f> {
             None => (self.pose(of), None),
         };
         let at = |k: usize| size.get(k).copied();
+        // Between two ends the length is theirs, and what is across has one number.
+        let three = || Some([at(0)?, half.map_or(at(1), |_| at(0))?, half.or(at(2))?]);
         let solid = match kind {
             "sphere" => Solid::Sphere { radius: at(0)? },
             "capsule" => Solid::Capsule { radius: at(0)?, half: half.or(at(1))? },
             "cylinder" => Solid::Cylinder { radius: at(0)?, half: half.or(at(1))? },
-            _ => Solid::Box { half: [at(0)?, half.map_or(at(1), |_| at(0))?, half.or(at(2))?] },
+            "ellipsoid" => Solid::Ellipsoid { half: three()? },
+            _ => Solid::Box { half: three()? },
         };
         Some(Shape { frame, solid })
     }
@@ -623,7 +808,97 @@ impl<'a, 't, 'f> Reader<'a, 't, 'f> {
 }
 
 fn name_of(node: Node) -> String {
-    node.attribute("name").unwrap_or_default().to_string()
+    name(node.attribute("name").unwrap_or_default())
+}
+
+/// Geoms of which the size says all.
+const SOLIDS: [&str; 5] = ["sphere", "capsule", "cylinder", "box", "ellipsoid"];
+
+/// Volume, m³, and moments of inertia of 1 kg, m², of a solid.
+fn full(solid: &Solid) -> [f64; 4] {
+    let across = |[a, b, c]: [f64; 3], share: f64| [b * b + c * c, a * a + c * c, a * a + b * b].map(|s| s * share);
+    let with = |volume: f64, [x, y, z]: [f64; 3]| [volume, x, y, z];
+    match *solid {
+        Solid::Sphere { radius: r } => with(4.0 / 3.0 * PI * r.powi(3), [0.4 * r * r; 3]),
+        Solid::Box { half } => with(8.0 * half.iter().product::<f64>(), across(half, 1.0 / 3.0)),
+        Solid::Ellipsoid { half } => with(4.0 / 3.0 * PI * half.iter().product::<f64>(), across(half, 1.0 / 5.0)),
+        Solid::Cylinder { radius: r, half: h } => {
+            let across = r * r / 4.0 + h * h / 3.0;
+            [2.0 * PI * r * r * h, across, across, r * r / 2.0]
+        }
+        Solid::Capsule { radius: r, half: h } => {
+            let (tube, ball) = (2.0 * PI * r * r * h, 4.0 / 3.0 * PI * r.powi(3));
+            let volume = tube + ball;
+            let (t, b) = (tube / volume, ball / volume);
+            let along = t * r * r / 2.0 + b * 0.4 * r * r;
+            let across = t * (r * r / 4.0 + h * h / 3.0) + b * (0.4 * r * r + h * h + 0.75 * h * r);
+            [volume, across, across, along]
+        }
+    }
+}
+
+/// Surface, m², and moments of inertia of 1 kg on it, m². An ellipsoid's are approximate, as MuJoCo has them: no closed form is
+/// known of its surface (Thomsen's formula), and its shell is as thick along each axis.
+fn shell(solid: &Solid) -> [f64; 4] {
+    match *solid {
+        Solid::Sphere { radius: r } => [4.0 * PI * r * r, r * r / 1.5, r * r / 1.5, r * r / 1.5],
+        Solid::Box { half: [a, b, c] } => {
+            // Two faces across each axis: what they share of the surface.
+            let faces = [b * c, c * a, a * b];
+            let sum: f64 = faces.iter().sum();
+            let half = [a, b, c];
+            // ∫x² over the surface: the faces across x are at ±a, on the others x² is a third of a² on the mean.
+            let square = |k: usize| half[k] * half[k] * (faces[k] + (sum - faces[k]) / 3.0) / sum;
+            let [x, y, z] = [square(0), square(1), square(2)];
+            [8.0 * sum, y + z, x + z, x + y]
+        }
+        Solid::Ellipsoid { half: [a, b, c] } => {
+            let power = 1.6075;
+            let mean = [a * b, b * c, c * a].map(|s| s.powf(power)).iter().sum::<f64>() / 3.0;
+            let bulge = 2.0 * a * b * c / (a * b + b * c + c * a);
+            let moment = |p: f64, q: f64| (p * p + q * q + bulge * (p + q)) / 5.0;
+            [4.0 * PI * mean.powf(1.0 / power), moment(b, c), moment(a, c), moment(a, b)]
+        }
+        Solid::Cylinder { radius: r, half: h } => {
+            let (tube, lids) = (4.0 * PI * r * h, 2.0 * PI * r * r);
+            let surface = tube + lids;
+            let (t, l) = (tube / surface, lids / surface);
+            let across = t * (r * r / 2.0 + h * h / 3.0) + l * (r * r / 4.0 + h * h);
+            [surface, across, across, t * r * r + l * r * r / 2.0]
+        }
+        Solid::Capsule { radius: r, half: h } => {
+            let (tube, ball) = (4.0 * PI * r * h, 4.0 * PI * r * r);
+            let surface = tube + ball;
+            let (t, b) = (tube / surface, ball / surface);
+            // The centre of half a sphere is r/2 from its middle.
+            let across = t * (r * r / 2.0 + h * h / 3.0) + b * (r * r / 1.5 + h * h + h * r);
+            [surface, across, across, t * r * r + b * r * r / 1.5]
+        }
+    }
+}
+
+/// An actuator of a joint.
+struct Drive {
+    gear: Option<f64>,
+    /// On the joint; `None` where nothing limits it.
+    torque: Option<Torque>,
+}
+
+/// The least and the greatest torque, N·m.
+#[derive(Clone, Copy)]
+struct Torque([f64; 2]);
+
+impl Torque {
+    fn times(self, factor: f64) -> Torque {
+        let [a, b] = self.0.map(|x| x * factor);
+        Torque([a.min(b), a.max(b)])
+    }
+}
+
+impl Sum for Torque {
+    fn sum<I: Iterator<Item = Torque>>(all: I) -> Torque {
+        all.fold(Torque([0.0; 2]), |Torque([a, b]), Torque([c, d])| Torque([a + c, b + d]))
+    }
 }
 
 /// What elements are called where defaults are kept: all actuators share theirs.
@@ -632,8 +907,9 @@ fn tag_of(tag: &str) -> &'static str {
         "joint" => "joint",
         "freejoint" => "freejoint",
         "geom" => "geom",
+        "equality" => "equality",
         "motor" | "general" | "position" | "velocity" | "intvelocity" | "damper" | "cylinder" | "muscle"
-        | "adhesion" => "actuator",
+        | "adhesion" | "dcmotor" => "actuator",
         _ => "other",
     }
 }

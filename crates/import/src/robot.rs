@@ -1,10 +1,11 @@
 //! Legs on a platform as the specification has them, with all that its text needs, or what is missing for that.
 
-use super::fault::{Faults, Kind};
+use super::fault::{Faults, Kind, Place};
 use super::inertia;
 use super::limbs::{Limb, Limbs};
-use super::model::{Friction, Kind as JointKind, Model, Spring};
-use super::words::{Identifiers, fits, identifier};
+use super::model::{EARTH, Format, Friction, Kind as JointKind, Model, Rotor, Spring};
+use super::options::{chosen, chosen_stops};
+use super::words::{Identifiers, identifier, short_list};
 use super::{Options, ROUNDED, Rigid, Setting, nearest_axis};
 use nalgebra::{Matrix3, Vector3};
 use piaffe_model::digits::digits;
@@ -15,6 +16,7 @@ use std::f64::consts::TAU;
 pub struct Robot {
     pub name: String,
     pub platform_name: String,
+    pub platform_place: Place,
     /// From the root's origin.
     pub platform: Rigid,
     pub legs: Vec<Leg>,
@@ -41,6 +43,7 @@ pub struct Segment {
 #[derive(Clone, Debug)]
 pub struct Joint {
     pub name: String,
+    pub source: Source,
     /// 0, 1, 2: roll, yaw, pitch.
     pub axis: usize,
     /// −1 where the specification's angle is the negative of the file's.
@@ -51,18 +54,26 @@ pub struct Joint {
     pub motor: Motor,
 }
 
-/// What drives a joint: at the joint N·m and rad/s, at the motor kg·m².
+/// What the file calls something, and where it stands.
+#[derive(Clone, Debug)]
+pub struct Source {
+    pub name: String,
+    pub place: Place,
+}
+
+/// What drives a joint: at the joint, N·m and rad/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motor {
     pub effort: f64,
     pub velocity: f64,
     pub gear: Option<f64>,
-    pub rotor: Option<f64>,
+    pub rotor: Option<Rotor>,
 }
 
 #[derive(Clone, Debug)]
 pub struct Link {
     pub name: String,
+    pub source: Source,
     /// From its joint.
     pub rigid: Rigid,
     /// The next joint or the foot, from its joint, m.
@@ -84,9 +95,14 @@ impl Leg {
 }
 
 impl Robot {
+    /// m/s².
+    pub fn fall(&self) -> f64 {
+        self.gravity.unwrap_or(EARTH)
+    }
+
     pub fn weight(&self) -> f64 {
         let legs: f64 = self.legs.iter().flat_map(|l| &l.segments).map(|s| s.link.rigid.mass).sum();
-        9.81 * (self.platform.mass + legs)
+        self.fall() * (self.platform.mass + legs)
     }
 
     pub fn reach(&self) -> f64 {
@@ -108,8 +124,8 @@ pub fn assemble(
         options,
         faults,
         notes,
-        links: Identifiers::default(),
-        joints: Identifiers::default(),
+        links: Identifiers::among(model.links.iter().map(|link| link.name.as_str())),
+        joints: Identifiers::among(model.joints.iter().map(|joint| joint.name.as_str())),
         legs: Identifiers::default(),
         tilt: 0.0,
         turning: Vec::new(),
@@ -127,7 +143,8 @@ pub fn assemble(
     let legs = limbs.legs.iter().map(|limb| making.leg(limb)).collect();
     making.say();
     let name = if model.name.is_empty() { "robot".to_string() } else { model.name.clone() };
-    let mut robot = Robot { name, platform_name, platform, legs, gravity: model.gravity };
+    let platform_place = place.clone();
+    let mut robot = Robot { name, platform_name, platform_place, platform, legs, gravity: model.gravity };
     apart(&mut robot, notes);
     robot
 }
@@ -165,7 +182,12 @@ impl Making<'_> {
             }
             let inertia = self.possible(&body.rigid, body.link);
             let rigid = Rigid { com: body.rigid.com - body.origin, inertia, ..body.rigid };
-            let link = Link { name: self.links.distinct(&source.name), rigid, end: next - body.origin };
+            let link = Link {
+                name: self.links.distinct(&source.name),
+                source: Source { name: source.name.clone(), place: source.place.clone() },
+                rigid,
+                end: next - body.origin,
+            };
             if let Some(joint) = body.joint.as_ref().and_then(|moving| self.joint(moving.joint, &moving.axis)) {
                 segments.push(Segment { joint, link });
             }
@@ -207,6 +229,12 @@ impl Making<'_> {
         let (motor, [low, high]) = (motor?, range?);
         let range = if sign < 0.0 { [0.0 - high, 0.0 - low] } else { [low, high] };
         let (name, friction) = (self.joints.distinct(&joint.name), joint.friction);
+        let source = Source { name: joint.name.clone(), place: joint.place.clone() };
+        if joint.spring_is_derived {
+            let what = "its spring and damping follow from the inertia of the whole robot (springdamper)";
+            let remedy = format!("write its stiffness and damping instead; or {}", super::mjcf::SAVE);
+            self.faults.add(Kind::Joint, Some(&joint.place), what, remedy);
+        }
         let spring = if sign < 0.0 { joint.spring.turned() } else { joint.spring };
         if spring.stiffness < 0.0 {
             let what = "the stiffness of its spring is less than none";
@@ -225,7 +253,7 @@ impl Making<'_> {
             let what = "its friction is less than none: it would drive the joint";
             self.faults.add(Kind::Number, Some(&joint.place), what, "remove the sign of its damping or its friction");
         }
-        Some(Joint { name, axis, sign, range, spring, friction, motor })
+        Some(Joint { name, source, axis, sign, range, spring, friction, motor })
     }
 
     fn motor(&mut self, index: usize) -> Option<Motor> {
@@ -243,14 +271,17 @@ impl Making<'_> {
         let effort = positive(effort, "greatest torque (effort)", "effort", "N·m");
         let velocity = positive(velocity, "greatest speed (velocity)", "velocity", "rad/s");
         let gear = setting(&self.options.gears, &joint.name, joint.gear);
-        let rotor = setting(&self.options.rotors, &joint.name, joint.rotor);
+        let rotor = match chosen(&self.options.rotors, &joint.name, joint.rotor.is_some()) {
+            Some(given) => Some(Rotor::AtMotor(self.options.rotors[given].value)),
+            None => joint.rotor,
+        };
         Some(Motor { effort: effort?, velocity: velocity?, gear, rotor })
     }
 
     /// Stops in the file's sense of rotation, within one turn to either side.
     fn range(&mut self, index: usize) -> Option<[f64; 2]> {
         let joint = &self.model.joints[index];
-        let given = self.options.ranges.iter().rev().find(|r| fits(&r.joint, &joint.name)).map(|r| r.range);
+        let given = chosen_stops(self.options, &joint.name).map(|k| self.options.ranges[k].range);
         let range = match joint.kind {
             JointKind::Continuous => given,
             _ => given.or(joint.range),
@@ -270,19 +301,26 @@ impl Making<'_> {
             self.faults.add(Kind::Limit, Some(&joint.place), what, remedy);
             return None;
         }
-        if low <= -2.0 * TAU && high >= 2.0 * TAU {
+        let degrees = low.abs().max(high.abs()) <= 360.0;
+        if low <= -2.0 * TAU && high >= 2.0 * TAU && !degrees {
             self.turning.push(format!("`{}`", joint.name));
             return Some([-WHOLE_TURN, WHOLE_TURN]);
         }
         if low < -2.0 * TAU || high > 2.0 * TAU {
             let [a, b] = [low, high].map(f64::to_radians);
-            let what = format!(
-                "its stops are at {} and {} rad, several turns away: these are degrees",
-                digits(low),
-                digits(high)
-            );
-            let remedy =
-                format!("write lower=\"{a:.4}\" upper=\"{b:.4}\", or give them: --range {}={a:.4},{b:.4}", joint.name);
+            let are = if degrees { ": these are degrees" } else { "" };
+            let what = format!("its stops are at {} and {} rad, several turns away{are}", digits(low), digits(high));
+            let written = match self.model.format {
+                Format::Urdf => format!("lower=\"{a:.4}\" upper=\"{b:.4}\""),
+                Format::Mjcf => format!("range=\"{a:.4} {b:.4}\""),
+            };
+            let name = &joint.name;
+            let remedy = match degrees {
+                true => format!(
+                    "write {written}, or give them: --range {name}={a:.4},{b:.4}; if it has none: --range {name}=-6.28,6.28"
+                ),
+                false => format!("count from another zero, or give them: --range {name}=LOW,HIGH"),
+            };
             self.faults.add(Kind::Limit, Some(&joint.place), what, remedy);
             return None;
         }
@@ -339,6 +377,15 @@ impl Making<'_> {
     }
 
     fn say(&mut self) {
+        for (what, names) in [("links", &self.links.changed), ("joints", &self.joints.changed)] {
+            if !names.is_empty() {
+                let pairs: Vec<String> = names.iter().map(|(name, made)| format!("`{name}` is `{made}`")).collect();
+                self.notes.push(format!(
+                    "names of {what} that a specification does not admit are changed (robot.toml has both): {}",
+                    short_list(&pairs)
+                ));
+            }
+        }
         if self.tilt > 1e-6 && self.tilt <= ROUNDED {
             let tilt = self.tilt;
             self.notes
@@ -359,9 +406,7 @@ const WHOLE_TURN: f64 = TAU * (1.0 - 1e-9);
 
 /// The value for a joint: what is given for its name, else what the file has, else what is given for all.
 fn setting(settings: &[Setting], joint: &str, file: Option<f64>) -> Option<f64> {
-    let named = settings.iter().rev().find(|s| s.joint.as_ref().is_some_and(|pattern| fits(pattern, joint)));
-    let all = || settings.iter().rev().find(|s| s.joint.is_none()).map(|s| s.value);
-    named.map(|s| s.value).or(file).or_else(all)
+    chosen(settings, joint, file.is_some()).map(|k| settings[k].value).or(file)
 }
 
 /// Legs at one place, as in planar models: they are put apart sideways, which does not matter in the plane.

@@ -1,4 +1,4 @@
-//! A robot of a specification drawn as it stands, so that a mistake in it is seen: from its right and from the front, with its
+//! A robot of a specification drawn as it stands, so that a mistake in it is seen: from its right and from behind, with its
 //! joints, feet and mass centre. It needs no generated code.
 
 use piaffe_codegen::spec::{Axis, Leg, Robot};

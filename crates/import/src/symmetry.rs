@@ -1,10 +1,11 @@
 //! Symmetry as people mean it: legs that agree to what a file rounds are made alike, and it is said what that changed.
 //!
 //! Left and right legs are mirror images of each other. Fore and hind legs that are to move as one need the same lengths,
-//! stops and motors in the plane; what they weigh is their own.
+//! stops and motors in the plane; what they weigh is their own. What was identified joint by joint, rotors, friction and
+//! springs, differs more than a file rounds, and becomes the mean of counterparts; each such change is said.
 
 use super::Rigid;
-use super::model::{Friction, Spring};
+use super::model::{Friction, Rotor, Spring};
 use super::robot::{Leg, Motor, PITCH, Robot};
 use nalgebra::Vector3;
 use piaffe_model::digits::few;
@@ -24,7 +25,8 @@ impl Arrangement {
         let follows = match self.pairs.len() {
             1 => "each of the two steps is found for itself",
             2 => "diagonal legs do not move as one, and there is no trot",
-            _ => "there is no tripod",
+            3 => "there is no tripod",
+            _ => "there is no gait of alternating legs",
         };
         (!self.alike).then(|| format!("since legs differ, {follows}: {MEANT_ALIKE}"))
     }
@@ -76,9 +78,11 @@ pub fn arrange(robot: &mut Robot, tolerance: f64, notes: &mut Vec<String>) -> Op
                     new.joint.name
                 ));
             }
-            match (was.rotor, is.rotor) {
-                (Some(p), Some(q)) if p != q => notes.push(format!(
-                    "the rotor of `{}` is the mean of it and its counterparts: {q:.3e} instead of {p:.3e} kg·m²",
+            // As the joint feels them, whatever is known of its gear.
+            let felt = |motor: &Motor| motor.rotor.map(|rotor| rotor.at_joint(is.gear));
+            match (felt(was), felt(is)) {
+                (Some(p), Some(q)) if (p - q).abs() > EXACT * p.abs().max(q.abs()) => notes.push(format!(
+                    "the rotor of `{}` is the mean of it and its counterparts: {q:.3e} instead of {p:.3e} kg·m² at the joint",
                     new.joint.name
                 )),
                 (None, Some(_)) => notes.push(format!(
@@ -157,6 +161,9 @@ struct Likening {
     which: String,
 }
 
+/// The least share of the narrower range that is enough for two joints to have one.
+const SHARED: f64 = 0.25;
+
 /// What the specification takes for equal: nothing has to be changed.
 const EXACT: f64 = 1e-9;
 
@@ -221,10 +228,13 @@ impl Likening {
         let scale = a.mass.max(b.mass);
         let size = a.inertia.amax().max(b.inertia.amax());
         let what = |of: &str| format!("{of} of `{}` and `{}`", names[0], names[1]);
-        let mass = self.mean(a.mass, b.mass, scale, || what("masses"))?;
-        let x = self.mean(a.com.x, b.com.x, self.scale, || what("mass centres"))?;
-        let y = self.mean(a.com.y, b.com.y, self.scale, || what("mass centres"))?;
-        let swing = self.mean(a.inertia[(2, 2)], b.inertia[(2, 2)], size, || what("inertias"))?;
+        // One that differs too much leaves all as they are, and nothing to tell.
+        let before = (self.greatest, self.which.clone());
+        let all = self.weights(a, b, scale, size, &what);
+        if all.is_none() {
+            (self.greatest, self.which) = before;
+        }
+        let [mass, x, y, swing] = all?;
         (a.mass, b.mass) = (mass, mass);
         (a.com.x, b.com.x, a.com.y, b.com.y) = (x, x, y, y);
         (a.inertia[(2, 2)], b.inertia[(2, 2)]) = (swing, swing);
@@ -241,6 +251,23 @@ impl Likening {
             }
         }
         Some(())
+    }
+
+    /// Mass, mass centre and inertia in the plane, if all of them are meant to be the same.
+    fn weights(
+        &mut self,
+        a: &Rigid,
+        b: &Rigid,
+        scale: f64,
+        size: f64,
+        what: &dyn Fn(&str) -> String,
+    ) -> Option<[f64; 4]> {
+        Some([
+            self.mean(a.mass, b.mass, scale, || what("masses"))?,
+            self.mean(a.com.x, b.com.x, self.scale, || what("mass centres"))?,
+            self.mean(a.com.y, b.com.y, self.scale, || what("mass centres"))?,
+            self.mean(a.inertia[(2, 2)], b.inertia[(2, 2)], size, || what("inertias"))?,
+        ])
     }
 
     /// Whether two legs have the same joints, lengths, stops and motors in the plane; else why not.
@@ -281,7 +308,7 @@ impl Likening {
             let other = if s.joint.axis != PITCH { [0.0 - other[1], 0.0 - other[0]] } else { other };
             let [low, high] = shared(s.joint.range, other);
             let narrow = (s.joint.range[1] - s.joint.range[0]).min(other[1] - other[0]);
-            if high - low < 0.25 * narrow {
+            if high - low < SHARED * narrow {
                 let [p, q] = [s.joint.range, other].map(|[a, b]| format!("[{a:.3}, {b:.3}]"));
                 return Err(format!("{names} share hardly any angles: {p} and {q} rad"));
             }
@@ -319,10 +346,8 @@ impl Likening {
     fn one_plane(&mut self, legs: &mut [Leg]) {
         let Some(mut model) = legs.first().cloned() else { return };
         for (depth, segment) in model.segments.iter_mut().enumerate() {
-            let given: Vec<f64> = legs.iter().filter_map(|l| l.segments[depth].joint.motor.rotor).collect();
-            if given.iter().any(|rotor| *rotor != given[0]) {
-                segment.joint.motor.rotor = Some(given.iter().sum::<f64>() / given.len() as f64);
-            }
+            let motors: Vec<Motor> = legs.iter().map(|l| l.segments[depth].joint.motor).collect();
+            segment.joint.motor.rotor = mean_rotor(&motors);
             let all: Vec<Friction> = legs.iter().map(|l| l.segments[depth].joint.friction).collect();
             segment.joint.friction = mean(&all);
             let all: Vec<Spring> = legs.iter().map(|l| l.segments[depth].joint.spring).collect();
@@ -394,9 +419,20 @@ fn mean(all: &[Friction]) -> Friction {
 /// What both are. A gear or rotor that the file gives for one of them is the other's too; rotors that were identified one by
 /// one are the mean of them.
 fn one_motor(a: &Motor, b: &Motor) -> Motor {
-    let rotor = match (a.rotor, b.rotor) {
-        (Some(p), Some(q)) if p != q => Some(0.5 * (p + q)),
-        (p, q) => p.or(q),
-    };
-    Motor { gear: a.gear.or(b.gear), rotor, ..*a }
+    Motor { gear: a.gear.or(b.gear), rotor: mean_rotor(&[*a, *b]), ..*a }
+}
+
+/// The rotor of joints that must have the same: the mean of those that are given; of equal ones as it is.
+fn mean_rotor(motors: &[Motor]) -> Option<Rotor> {
+    let given: Vec<Rotor> = motors.iter().filter_map(|motor| motor.rotor).collect();
+    let first = *given.first()?;
+    if given.iter().all(|rotor| *rotor == first) {
+        return Some(first);
+    }
+    let gear = motors.iter().find_map(|motor| motor.gear);
+    let mean = |of: &dyn Fn(&Rotor) -> f64| given.iter().map(of).sum::<f64>() / given.len() as f64;
+    Some(match given.iter().all(|rotor| matches!(rotor, Rotor::AtMotor(_))) {
+        true => Rotor::AtMotor(mean(&|rotor| rotor.at_motor(gear))),
+        false => Rotor::AtJoint(mean(&|rotor| rotor.at_joint(gear))),
+    })
 }

@@ -3,8 +3,8 @@
 
 use super::Rigid;
 use super::fault::{Faults, Kind};
-use super::model::{Kind as Joint, Model, Shape};
-use nalgebra::{Isometry3, Matrix3, Translation3, Unit, UnitQuaternion, Vector3};
+use super::model::{Kind as Joint, Mass, Model, Shape};
+use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 use std::collections::BTreeMap;
 
 /// The bodies, parents before children; the first one is the root.
@@ -44,7 +44,10 @@ pub struct Moving {
     pub axis: Vector3<f64>,
 }
 
-/// Joints that are held, by their index, at angles of the file, rad.
+/// An axis no longer than this, in the file's numbers, points nowhere.
+const NO_AXIS: f64 = 1e-9;
+
+/// Joints that are held, by their index, at angles of the file, rad or m.
 pub type Held = BTreeMap<usize, f64>;
 
 /// Which links hang on which: the root, and the joints below every link.
@@ -69,6 +72,10 @@ impl Skeleton {
                 continue;
             }
             below[joint.parent].push(k);
+            if (joint.turns() || joint.slides) && joint.axis.norm() < NO_AXIS {
+                let what = "its axis has no direction: it is 0 0 0";
+                faults.add(Kind::Joint, Some(&joint.place), what, "write its axis, or make it fixed");
+            }
         }
         let roots: Vec<usize> = (0..model.links.len()).filter(|l| above[*l].is_none()).collect();
         // Links that nothing hangs on and that hang on nothing are left over from editing.
@@ -130,9 +137,13 @@ impl Tree {
             for index in &skeleton.below[link] {
                 let joint = &model.joints[*index];
                 let at = frame * joint.frame;
-                let axis = Unit::try_new(joint.axis, 1e-9);
-                let turn = |angle: f64| {
-                    axis.map_or(UnitQuaternion::identity(), |axis| UnitQuaternion::from_axis_angle(&axis, angle))
+                let axis = Unit::try_new(joint.axis, NO_AXIS);
+                let moved = |by: f64| match axis {
+                    None => Isometry3::identity(),
+                    Some(axis) if joint.slides => Translation3::from(axis.into_inner() * by).into(),
+                    Some(axis) => {
+                        Isometry3::from_parts(Translation3::identity(), UnitQuaternion::from_axis_angle(&axis, by))
+                    }
                 };
                 let offset = Translation3::from(joint.offset);
                 next.push(match (held.get(index), axis) {
@@ -141,7 +152,7 @@ impl Tree {
                         tree.bodies.push(Body::new(joint.child, Some(body), Some(moving), at.translation.vector));
                         (joint.child, tree.bodies.len() - 1, at * offset)
                     }
-                    (angle, _) => (joint.child, body, at * turn(angle.copied().unwrap_or(0.0)) * offset),
+                    (by, _) => (joint.child, body, at * moved(by.copied().unwrap_or(0.0)) * offset),
                 });
             }
             next.reverse();
@@ -176,14 +187,8 @@ impl Body {
     fn take(&mut self, model: &Model, link: usize, frame: &Isometry3<f64>) {
         let source = &model.links[link];
         for mass in &source.masses {
-            let at = frame * mass.frame;
-            let rotation = at.rotation.to_rotation_matrix();
-            let rotation: &Matrix3<f64> = rotation.matrix();
-            self.rigid = self.rigid.with(&Rigid {
-                mass: mass.mass,
-                com: at.translation.vector,
-                inertia: rotation * mass.inertia * rotation.transpose(),
-            });
+            let at = Mass { frame: frame * mass.frame, ..*mass };
+            self.rigid = self.rigid.with(&at.rigid());
         }
         let shapes = source.shapes.iter().map(|s| Shape { frame: frame * s.frame, solid: s.solid });
         self.carried.push(Carried { link, frame: *frame, shapes: shapes.collect() });

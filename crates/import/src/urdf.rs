@@ -1,16 +1,18 @@
 //! URDF → [`Model`]. Only the parts that matter are read; what else is in a file cannot refuse it.
 
 use super::fault::{Faults, Kind, Place};
-use super::model::{Format, Friction, Joint, Kind as JointKind, Link, Mass, Model, Shape, Solid, Spring};
-use super::xml::{File, child, children, plain};
+use super::model::{Format, Friction, Joint, Kind as JointKind, Link, Mass, Model, Rotor, Shape, Solid, Spring};
+use super::words::{point_masses, short_list};
+use super::xml::{File, child, children, name as xml_name, plain};
 use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
 use piaffe_model::digits::digits;
 use roxmltree::Node;
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
 
-/// Angles this close to a right one were rounded by a person (1.57, 3.14), rad.
-const ROUNDED: f64 = 2e-3;
+/// Angles this close to a right one were rounded by a person (1.57, 3.14), rad: twice what 3.14 leaves out, less than 0.1°
+/// of a mount that is meant.
+const RIGHT: f64 = 2e-3;
 
 pub fn read(file: &File, faults: &mut Faults) -> Option<Model> {
     let root = file.root();
@@ -21,7 +23,7 @@ pub fn read(file: &File, faults: &mut Faults) -> Option<Model> {
         faults.add(Kind::Format, Some(&place), "this is xacro, of which URDF is made", remedy);
         return None;
     }
-    let mut reader = Reader { file, faults, rounded: 0.0, rounds: 0 };
+    let mut reader = Reader { file, faults, rounded: 0.0, rounds: 0, points: Vec::new() };
     let mut links = Vec::new();
     let mut named: BTreeMap<String, usize> = BTreeMap::new();
     for node in children(root, "link") {
@@ -58,8 +60,11 @@ pub fn read(file: &File, faults: &mut Faults) -> Option<Model> {
             reader.rounds, reader.rounded
         ));
     }
+    if !reader.points.is_empty() {
+        notes.push(point_masses(&short_list(&reader.points)));
+    }
     let name = root.attribute("name").map(plain).unwrap_or_default();
-    Some(Model { name, format: Format::Urdf, links, joints, gravity: None, notes })
+    Some(Model { name, format: Format::Urdf, links, joints, gravity: None, up: None, notes })
 }
 
 /// An element of the namespace of xacro, or one with what xacro replaces.
@@ -75,11 +80,13 @@ struct Reader<'r, 'f, 't> {
     /// The greatest change of an angle that was made a right one, and how many there are.
     rounded: f64,
     rounds: usize,
+    /// Links with a mass and no inertia.
+    points: Vec<String>,
 }
 
 impl Reader<'_, '_, '_> {
     fn name(&mut self, node: Node, place: &Place) -> String {
-        let name = node.attribute("name").map(plain).unwrap_or_default();
+        let name = node.attribute("name").map(xml_name).unwrap_or_default();
         if name.is_empty() {
             self.faults.add(Kind::Missing, Some(place), "it has no name", "write name=\"…\"");
         }
@@ -89,7 +96,7 @@ impl Reader<'_, '_, '_> {
     fn link(&mut self, node: Node) -> Link {
         let place = self.file.place(node);
         let name = self.name(node, &place);
-        let masses = child(node, "inertial").and_then(|inertial| self.mass(inertial)).into_iter().collect();
+        let masses = child(node, "inertial").and_then(|inertial| self.mass(inertial, &name)).into_iter().collect();
         let shapes_of = |of: &'static str| children(node, of).collect::<Vec<_>>();
         let mut solid = shapes_of("collision");
         if solid.is_empty() {
@@ -99,17 +106,25 @@ impl Reader<'_, '_, '_> {
         Link { name, place, masses, shapes }
     }
 
-    fn mass(&mut self, node: Node) -> Option<Mass> {
+    fn mass(&mut self, node: Node, name: &str) -> Option<Mass> {
         let place = self.place_of_parent(node);
         let frame = self.origin(node);
         let mass = child(node, "mass").and_then(|m| self.file.number(m, "value", self.faults));
         let entries = child(node, "inertia").map(|inertia| {
             ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"].map(|key| match inertia.attribute(key) {
+                None if ["ixx", "iyy", "izz"].contains(&key) => {
+                    let remedy = format!("write {key}=\"…\" in kg·m²");
+                    self.faults.add(Kind::Inertia, Some(&place), format!("its inertia has no {key}"), remedy);
+                    f64::NAN
+                }
                 None => 0.0,
                 Some(_) => self.file.number(inertia, key, self.faults).unwrap_or(f64::NAN),
             })
         });
         let mass = mass.unwrap_or(if child(node, "mass").is_some() { f64::NAN } else { 0.0 });
+        if entries.is_none() && mass > 0.0 {
+            self.points.push(format!("`{name}`"));
+        }
         let [xx, yy, zz, xy, xz, yz] = entries.unwrap_or_default();
         let inertia = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
         if mass < 0.0 {
@@ -156,7 +171,7 @@ impl Reader<'_, '_, '_> {
                 self.faults.add(Kind::Missing, Some(&place), format!("it has no <{end} link=\"…\"/>"), "name the link");
                 return None;
             };
-            let found = links.get(&plain(link)).copied();
+            let found = links.get(&xml_name(link)).copied();
             if found.is_none() {
                 let near = super::words::nearest(link, links.keys().map(String::as_str));
                 let remedy = near.map_or("name a link of the file".into(), |near| format!("did you mean `{near}`?"));
@@ -178,6 +193,7 @@ impl Reader<'_, '_, '_> {
             None => Vector3::x(),
             Some(axis) => self.file.numbers(axis, "xyz", self.faults).map_or(Vector3::x(), Vector3::from),
         };
+        let slides = node.attribute("type") == Some("prismatic");
         let limit = child(node, "limit");
         let given = |key: &str, reader: &mut Self| {
             limit.and_then(|limit| reader.file.number(limit, key, reader.faults)).filter(|x| *x != 0.0)
@@ -198,6 +214,7 @@ impl Reader<'_, '_, '_> {
             name,
             place,
             kind,
+            slides,
             parent,
             child,
             frame,
@@ -209,6 +226,7 @@ impl Reader<'_, '_, '_> {
             gear: None,
             rotor: None,
             spring: Spring::default(),
+            spring_is_derived: false,
             friction,
         })
     }
@@ -223,7 +241,7 @@ impl Reader<'_, '_, '_> {
         let all: Vec<Node> = children(node, "joint").collect();
         let [named] = all[..] else { return };
         let Some(joint) =
-            named.attribute("name").map(plain).and_then(|name| joints.iter_mut().find(|j| j.name == name))
+            named.attribute("name").map(xml_name).and_then(|name| joints.iter_mut().find(|j| j.name == name))
         else {
             return;
         };
@@ -249,7 +267,7 @@ impl Reader<'_, '_, '_> {
         }
         if let Some((rotor, place)) = rotor {
             if rotor >= 0.0 && rotor.is_finite() {
-                joint.rotor = Some(rotor);
+                joint.rotor = Some(Rotor::AtMotor(rotor));
             } else {
                 let what = format!("a rotor's inertia of {rotor}");
                 self.faults.add(Kind::Number, Some(&place), what, "write it in kg·m², 0 or more");
@@ -270,7 +288,7 @@ impl Reader<'_, '_, '_> {
         let turns = (angle / FRAC_PI_2).round();
         let exact = turns * FRAC_PI_2;
         let change = (angle - exact).abs();
-        if turns == 0.0 || change > ROUNDED {
+        if turns == 0.0 || change > RIGHT {
             return angle;
         }
         // Six digits and more are meant as they stand.

@@ -1,7 +1,7 @@
 //! Names: those that a specification admits, patterns that match them, and what a name tells of a link.
 
 use super::xml::plain;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A name that the specification admits.
 pub fn identifier(name: &str) -> String {
@@ -12,19 +12,33 @@ pub fn identifier(name: &str) -> String {
 /// Identifiers of names, each its own.
 #[derive(Default)]
 pub struct Identifiers {
-    taken: BTreeMap<String, usize>,
+    /// Names that are identifiers as they stand: no other one becomes one of them.
+    kept: BTreeSet<String>,
+    taken: BTreeSet<String>,
+    /// Names that are none, and what became of them.
+    pub changed: BTreeMap<String, String>,
 }
 
 impl Identifiers {
+    /// For these names, and others.
+    pub fn among<'n>(names: impl Iterator<Item = &'n str>) -> Identifiers {
+        let kept = names.filter(|name| identifier(name) == *name).map(String::from).collect();
+        Identifiers { kept, ..Identifiers::default() }
+    }
+
     /// An identifier like `name` that nothing else has.
     pub fn distinct(&mut self, name: &str) -> String {
-        let mut made = identifier(name);
+        let like = identifier(name);
+        let mut made = like.clone();
         let mut number = 1;
-        while self.taken.contains_key(&made) {
+        while self.taken.contains(&made) || (made != name && self.kept.contains(&made)) {
             number += 1;
-            made = format!("{}_{number}", identifier(name));
+            made = format!("{like}_{number}");
         }
-        self.taken.insert(made.clone(), number);
+        self.taken.insert(made.clone());
+        if made != name {
+            self.changed.insert(name.into(), made.clone());
+        }
         made
     }
 }
@@ -94,6 +108,27 @@ pub fn is_other_limb(name: &str) -> bool {
     has(name, &limbs)
 }
 
+/// Whether a name is of an arm, or of a foreleg where it stands.
+pub fn is_of_foreleg(name: &str) -> bool {
+    has(
+        name,
+        &["hand", "finger", "wrist", "elbow", "palm", "thumb", "shoulder", "scapula", "humerus", "radius", "ulna"],
+    )
+}
+
+/// The first names, and how many more there are.
+pub fn short_list(names: &[String]) -> String {
+    match names {
+        [first, second, third, _, ..] => format!("{first}, {second}, {third} and {} more", names.len() - 3),
+        _ => names.join(", "),
+    }
+}
+
+/// What is said of links with a mass and no inertia.
+pub fn point_masses(names: &str) -> String {
+    format!("{names}: a mass without moments of inertia in the file, which is taken to be in one point")
+}
+
 fn has(name: &str, words: &[&str]) -> bool {
     let name = name.to_lowercase();
     words.iter().any(|word| name.contains(word))
@@ -125,5 +160,9 @@ mod tests {
         let mut names = Identifiers::default();
         let made = ["leg-a", "leg_a", "leg_a_2", "2"].map(|name| names.distinct(name));
         assert_eq!(made, ["leg_a", "leg_a_2", "leg_a_2_2", "a_2"]);
+        // A name that may stay as it is stays, whatever else looks like it.
+        let mut names = Identifiers::among(["leg.a", "leg_a"].into_iter());
+        assert_eq!(["leg.a", "leg_a"].map(|name| names.distinct(name)), ["leg_a_2", "leg_a"]);
+        assert_eq!(names.changed.into_iter().collect::<Vec<_>>(), [("leg.a".into(), "leg_a_2".into())]);
     }
 }

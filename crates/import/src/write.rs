@@ -1,8 +1,9 @@
 //! The specification's text.
 
 use super::Rigid;
+use super::fault::Place;
 use super::model::{EARTH, Format};
-use super::robot::{Joint, Leg, Motor, Robot};
+use super::robot::{Joint, Leg, Motor, Robot, Source};
 use super::words::identifier;
 use nalgebra::Vector3;
 use std::fmt::Write;
@@ -35,6 +36,7 @@ pub fn robot(robot: &Robot, format: Format, notes: &[String]) -> String {
     for leg in &robot.legs {
         for (depth, segment) in leg.segments.iter().enumerate() {
             put(&mut out, &format!("\n[links.{}]", segment.link.name));
+            called(&mut out, &segment.link.name, &segment.link.source);
             let to = if depth + 1 < leg.segments.len() { "next joint" } else { "foot" };
             let length = format!("length = {}  # m, to the {to}\n", vector(&segment.link.end));
             inertial(&mut out, &segment.link.rigid, ["lateral", "axial", "swing"], &length);
@@ -53,15 +55,17 @@ pub fn robot(robot: &Robot, format: Format, notes: &[String]) -> String {
     out
 }
 
-/// The robot's name as a folder's name, none of those that the folder has for other things.
-pub fn folder(name: &str) -> String {
+/// The robot's name as a folder's name, none of those that the folder has for other things, or that its gaits have.
+pub fn folder<'g>(name: &str, gaits: impl IntoIterator<Item = &'g str>) -> String {
     let name = identifier(name).to_lowercase();
-    // Folders and modules that are there already, and gaits that robots without a folder have.
-    let taken = ["gaits", "schema", "trot", "amble", "curvet", "bound", "walk"];
-    if taken.contains(&name.as_str()) || piaffe_codegen::spec::unusable_as_folder(&name).is_some() {
-        format!("{name}_robot")
-    } else {
-        name
+    let taken = ["gaits", "schema"].into_iter().chain(gaits).any(|taken| taken == name);
+    if taken || piaffe_codegen::spec::unusable_as_folder(&name).is_some() { format!("{name}_robot") } else { name }
+}
+
+/// What the file calls it, if that is something else.
+fn called(out: &mut String, name: &str, source: &Source) {
+    if source.name != name {
+        put(out, &format!("# \"{}\" in the file", source.name));
     }
 }
 
@@ -94,9 +98,10 @@ fn inertial(out: &mut String, body: &Rigid, keys: [&str; 3], length: &str) {
 fn joints(out: &mut String, leg: &Leg, platform: &str, motors: &Motors) {
     let mut parent = platform;
     for segment in &leg.segments {
-        let Joint { name, axis, sign, range, spring, friction, motor } = &segment.joint;
+        let Joint { name, source, axis, sign, range, spring, friction, motor } = &segment.joint;
         let turned = if *sign < 0.0 { "  # turned round: the angle is minus the file's" } else { "" };
         put(out, &format!("\n[joints.{name}]"));
+        called(out, name, source);
         put(out, &format!("parent = \"{parent}\"\nchild = \"{}\"", segment.link.name));
         put(out, &format!("axis = \"{}\"{turned}", AXES[*axis]));
         put(out, &format!("range = [{}, {}]  # rad", number(range[0]), number(range[1])));
@@ -111,6 +116,22 @@ fn joints(out: &mut String, leg: &Leg, platform: &str, motors: &Motors) {
         }
         put(out, &format!("actuator = \"{}\"", motors.name(motor)));
         parent = &segment.link.name;
+    }
+}
+
+/// The joints and links of which a part of the text is, by the header above it: what the file calls them, and where they are.
+pub fn sources<'r>(robot: &'r Robot, header: &str) -> Vec<&'r Place> {
+    let segments = || robot.legs.iter().flat_map(|leg| &leg.segments);
+    let motors = Motors::of(robot);
+    let Some((kind, name)) = header.trim_matches(['[', ']']).split_once('.') else { return Vec::new() };
+    match kind {
+        "links" if name == robot.platform_name => vec![&robot.platform_place],
+        "links" => segments().filter(|s| s.link.name == name).map(|s| &s.link.source.place).collect(),
+        "joints" => segments().filter(|s| s.joint.name == name).map(|s| &s.joint.source.place).collect(),
+        "actuators" => {
+            segments().filter(|s| motors.name(&s.joint.motor) == name).map(|s| &s.joint.source.place).collect()
+        }
+        _ => Vec::new(),
     }
 }
 
@@ -156,7 +177,7 @@ impl Motors {
             put(
                 out,
                 &match motor.rotor {
-                    Some(rotor) => format!("rotor_inertia = {}  # kg·m²", number(rotor)),
+                    Some(rotor) => format!("rotor_inertia = {}  # kg·m²", number(rotor.at_motor(motor.gear))),
                     None => "rotor_inertia = 0.0               # kg·m²; assumed".into(),
                 },
             );

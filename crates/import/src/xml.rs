@@ -63,7 +63,7 @@ impl Prepared {
             format!("this is no XML: {error}{skipped}"),
             "give a URDF or MJCF file; `xmllint --noout FILE` shows the place",
         );
-        faults.settle().err().unwrap_or(ImportError(Vec::new()))
+        ImportError(faults.take())
     }
 
     pub fn document(&self) -> Result<File<'_>, ImportError> {
@@ -80,7 +80,10 @@ fn placed(error: &roxmltree::Error) -> String {
 }
 
 fn parse(text: &str) -> Result<Document<'_>, roxmltree::Error> {
-    Document::parse_with_options(text, ParsingOptions { nodes_limit: 4_000_000, ..ParsingOptions::default() })
+    Document::parse_with_options(
+        text,
+        ParsingOptions { allow_dtd: true, nodes_limit: 4_000_000, ..ParsingOptions::default() },
+    )
 }
 
 /// A parsed file.
@@ -143,8 +146,13 @@ pub fn children<'a, 't: 'a>(node: Node<'a, 't>, name: &'static str) -> impl Iter
     node.children().filter(move |n| n.is_element() && n.tag_name().name() == name)
 }
 
-/// A text for one line of a comment or a terminal: without characters that are not seen, and without what would end a string.
-pub fn plain(text: &str) -> String {
+/// A name, without characters that are not seen, and without what would end a string.
+pub fn name(text: &str) -> String {
     let clean = |c: char| if c.escape_debug().next() == Some('\\') { '_' } else { c };
-    text.trim().chars().take(100).map(clean).collect()
+    text.trim().chars().map(clean).collect()
+}
+
+/// A text for one line of a comment or a terminal.
+pub fn plain(text: &str) -> String {
+    name(text).chars().take(100).collect()
 }
