@@ -241,6 +241,7 @@ fn feet_touch_the_ground_with_what_is_lowest() {
     for (geoms, down) in [
         ("<geom type='capsule' fromto='-.1 0 0 .1 0 0' size='.05'/>", 0.05),
         ("<geom type='capsule' fromto='0 0 0 .2 0 0' size='.05'/>", 0.05),
+        ("<geom type='cylinder' fromto='0 0 0 .2 0 0' size='.05'/>", 0.05),
         (
             "<geom type='capsule' fromto='-.07 -.02 -.08 .14 -.04 -.08' size='.027'/><geom type='capsule' fromto='-.07 .02 -.08 .14 .04 -.08' size='.027'/>",
             0.107,
@@ -268,6 +269,8 @@ fn feet_touch_the_ground_with_what_is_lowest() {
     assert!(near(&end(&egg).1, &[0.0, -0.44, 0.0]), "{:?}", end(&egg));
     let lying = "<geom type='capsule' fromto='0 0 0 .4 0 0' size='.02' mass='1'/>";
     assert!(near(&end(lying).1, &[0.42, 0.0, 0.0]), "{:?}", end(lying));
+    let plain = end(&lying.replace("capsule", "cylinder"));
+    assert!(near(&plain.1, &[0.4, 0.0, 0.0]), "{plain:?}");
 }
 
 #[test]
