@@ -139,6 +139,18 @@ fn actuators_of_a_joint_add_up() {
     drive("<motor joint='l_knee' ctrlrange='0 7'/><motor joint='l_knee' ctrlrange='-5 0'/>", 5.0);
     drive("<motor joint='l_knee' ctrlrange='0 7'/><motor joint='l_knee' ctrlrange='0 5' gear='-1'/>", 5.0);
     drive("<motor joint='l_knee' ctrlrange='-1 1' gear='7'/><motor joint='l_knee' ctrlrange='-1 1' gear='5'/>", 12.0);
+    // What is said of all actuators makes a `general` one of its kind: a servo's control is no force.
+    let general = |defaults: &str| {
+        let head = format!("<default>{defaults}</default>");
+        let actuators = MOTORS.replace("<motor", "<general");
+        let text = Biped { head: &head, actuators: &actuators, ..PLAIN }.text();
+        made(&text, &[("--velocity", "20"), ("--effort", "1")]).1.legs[0].chain[1].joint.actuator.max_torque
+    };
+    let servo = "<position kp='7'/>";
+    assert_eq!(
+        [general("<general gainprm='5'/>"), general(servo), general(&format!("{servo}<motor/>"))],
+        [45.0, 1.0, 9.0]
+    );
     // One without a limit has none together with another.
     let open = format!("{MOTORS}<damper joint='l_knee' kv='1' ctrlrange='0 1'/>");
     let faults = refused(&Biped { actuators: &open, ..PLAIN }.text(), &[("--velocity", "20")]);
@@ -241,6 +253,7 @@ fn feet_touch_the_ground_with_what_is_lowest() {
     for (geoms, down) in [
         ("<geom type='capsule' fromto='-.1 0 0 .1 0 0' size='.05'/>", 0.05),
         ("<geom type='capsule' fromto='0 0 0 .2 0 0' size='.05'/>", 0.05),
+        ("<geom type='cylinder' fromto='0 0 0 .2 0 0' size='.05'/>", 0.05),
         (
             "<geom type='capsule' fromto='-.07 -.02 -.08 .14 -.04 -.08' size='.027'/><geom type='capsule' fromto='-.07 .02 -.08 .14 .04 -.08' size='.027'/>",
             0.107,
@@ -268,6 +281,8 @@ fn feet_touch_the_ground_with_what_is_lowest() {
     assert!(near(&end(&egg).1, &[0.0, -0.44, 0.0]), "{:?}", end(&egg));
     let lying = "<geom type='capsule' fromto='0 0 0 .4 0 0' size='.02' mass='1'/>";
     assert!(near(&end(lying).1, &[0.42, 0.0, 0.0]), "{:?}", end(lying));
+    let plain = end(&lying.replace("capsule", "cylinder"));
+    assert!(near(&plain.1, &[0.4, 0.0, 0.0]), "{plain:?}");
 }
 
 #[test]

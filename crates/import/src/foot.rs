@@ -149,20 +149,24 @@ fn bottom(shape: &Shape, joint: &Vector3<f64>, ankle: bool) -> (Vector3<f64>, Ho
         Solid::Capsule { radius, .. } | Solid::Cylinder { radius, .. } if axis.z.abs() > STEEP => {
             (centre + along(centre, radius) * radius, How::Round(radius))
         }
-        Solid::Capsule { radius, half } => {
+        Solid::Cylinder { half, .. } if axis.y.abs() > STEEP => (centre - axis * (half * axis.y.signum()), How::Sole),
+        Solid::Capsule { radius, half } | Solid::Cylinder { radius, half } => {
             let ends = [centre + axis * half, centre - axis * half];
-            let [near, far] =
-                if (ends[0] - joint).norm() > (ends[1] - joint).norm() { [ends[1], ends[0]] } else { ends };
+            let [near, far] = match (ends[0] - joint).norm() > (ends[1] - joint).norm() {
+                true => [ends[1], ends[0]],
+                false => ends,
+            };
             // A limb begins at its joint; what lies below one otherwise, or below an ankle, is a sole.
             let begins_there = (near - joint).norm() < radius.max(LEVEL * half);
             if axis.y.abs() < STEEP && (ankle || !begins_there) {
                 let below = (joint - centre).dot(&axis).clamp(-half.abs(), half.abs());
                 return (centre + axis * below + down * radius, How::Sole);
             }
-            (far + along(far, radius) * radius, How::Round(radius))
+            match shape.solid {
+                Solid::Capsule { .. } => (far + along(far, radius) * radius, How::Round(radius)),
+                _ => (far, How::Sole),
+            }
         }
-        Solid::Cylinder { half, .. } if axis.y.abs() > STEEP => (centre - axis * (half * axis.y.signum()), How::Sole),
-        Solid::Cylinder { radius, .. } => (centre + down * radius, How::Sole),
         Solid::Ellipsoid { half } => {
             let towards = along(centre, half.iter().copied().fold(0.0, f64::max));
             // The point at which a plane across `towards` touches it.

@@ -206,17 +206,21 @@ impl<'a, 't, 'f> Reader<'a, 't, 'f> {
         })
     }
 
-    /// The elements that have an attribute, with what it is: the class above all first, the element itself last.
-    fn all(&self, of: &Styled<'a, 't>, attribute: &str) -> Vec<(Node<'a, 't>, &'a str)> {
-        let said = |node: &Node<'a, 't>| node.attribute(attribute).map(|value| (*node, value));
-        let mut found: Vec<(Node, &str)> = said(&of.node).into_iter().collect();
+    /// What says something of an element: the class above all first, the element itself last.
+    fn line(&self, of: &Styled<'a, 't>) -> Vec<Node<'a, 't>> {
+        let mut line = vec![of.node];
         let mut class = Some(of.class);
         while let Some(here) = class.and_then(|c| self.classes.get(c)) {
-            found.extend(here.elements.get(of.tag).into_iter().flatten().rev().filter_map(said));
+            line.extend(here.elements.get(of.tag).into_iter().flatten().rev());
             class = here.above;
         }
-        found.reverse();
-        found
+        line.reverse();
+        line
+    }
+
+    /// Those of them that have an attribute, with what it is.
+    fn all(&self, of: &Styled<'a, 't>, attribute: &str) -> Vec<(Node<'a, 't>, &'a str)> {
+        self.line(of).into_iter().filter_map(|node| Some((node, node.attribute(attribute)?))).collect()
     }
 
     /// The value of an attribute and the element that gives it: the element itself, or its class, or a class above that.
@@ -524,9 +528,7 @@ impl<'a, 't, 'f> Reader<'a, 't, 'f> {
         let control = self.numbers::<2>(of, "ctrlrange").filter(|_| self.limited(of, "ctrllimited"));
         let gain = match of.node.tag_name().name() {
             "motor" => Some(1.0),
-            "general" if self.word(of, "biastype").is_none_or(|b| b == "none") => {
-                Some(self.number(of, "gainprm").unwrap_or(1.0))
-            }
+            "general" => self.gain(of),
             _ => None,
         };
         let control = control.zip(gain).map(|(range, gain)| Torque(range).times(gain));
@@ -535,6 +537,28 @@ impl<'a, 't, 'f> Reader<'a, 't, 'f> {
             (a, b) => a.or(b),
         };
         Drive { gear, torque: force.map(|force| force.times(gear.unwrap_or(1.0))) }
+    }
+
+    /// N or N·m for a control of 1, if that alone makes the force. Defaults of any actuator make one of this kind for all.
+    fn gain(&mut self, of: &Styled<'a, 't>) -> Option<f64> {
+        let mut gain = Some(1.0);
+        for node in self.line(of) {
+            match node.tag_name().name() {
+                "motor" => gain = Some(1.0),
+                "general" => {
+                    let given =
+                        node.attribute("gainprm").and_then(|text| self.file.list(node, "gainprm", text, self.faults));
+                    let given = given.and_then(|numbers| numbers.first().copied());
+                    gain = match node.attribute("biastype").map(str::trim) {
+                        Some("none") => given.or(gain).or(Some(1.0)),
+                        Some(_) => None,
+                        None => gain.map(|gain| given.unwrap_or(gain)),
+                    };
+                }
+                _ => gain = None,
+            }
+        }
+        gain
     }
 
     fn equalities(&mut self, root: Node<'a, 't>) {

@@ -87,7 +87,7 @@ pub fn idle(model: &Model, limbs: &Limbs, options: &Options) -> Vec<String> {
         idle.push(format!("--{option} {words} changes nothing: {why}"));
     };
     let still = "it names no joint that moves in a leg";
-    let later = "for all that it names another one counts, which is given later or names them";
+    let later = "for all that it names another one counts";
     for (option, settings, _) in options.settings() {
         let has = |joint: &super::model::Joint| match option {
             "effort" => joint.effort.is_some(),
