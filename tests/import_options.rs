@@ -73,10 +73,7 @@ fn options_that_change_nothing_are_told() {
 #[test]
 fn a_foot_that_is_given_touches_the_ground_with_its_bottom() {
     let ball = "_foot\"><collision><geometry><sphere radius=\"0.02\"/></geometry></collision></link>";
-    let round = control()
-        .replace("_foot\"/></joint", "_foot\"/></joint")
-        .replace("<link name=\"fl_foot\"/>", &format!("<link name=\"fl{ball}"));
-    let round = ["fr", "hl", "hr"].iter().fold(round, |text, leg| {
+    let round = ["fl", "fr", "hl", "hr"].iter().fold(control(), |text, leg| {
         text.replace(&format!("<link name=\"{leg}_foot\"/>"), &format!("<link name=\"{leg}{ball}"))
     });
     let (plain, robot) = made(&round, &[("--foot", "*_foot")]);
