@@ -15,7 +15,7 @@ pub struct Arguments {
     /// Folder for the specification; model-spec/ with the robot's name if it is not given.
     #[arg(long = "out", value_name = "DIR")]
     folder: Option<PathBuf>,
-    /// Joint that is held still, at an angle of the file (rad) or the one nearest to zero; `*` and `?` match several, a `/` at
+    /// Joint that is held still, at an angle of the file (rad; of a slide m) or the one nearest to zero; `*` and `?` match several, a `/` at
     /// the end all joints below it too. May be given several times, as all that name joints.
     #[arg(long, value_name = "JOINT[=ANGLE]")]
     lock: Vec<Lock>,
