@@ -333,6 +333,8 @@ pub fn default_of(name: &str) -> Option<&'static str> {
     let (key, within) = key_of(name)?;
     let default = key.default?;
     match (&key.kind, within) {
+        // Where there is no spring it rests nowhere.
+        (Number(Angle), 0) if default.parse::<f64>().is_err() => None,
         // No foot is a foot of no mass.
         (Number(_), 0) => Some(if default.parse::<f64>().is_ok() { default } else { "0" }),
         (Vector(_), 1) => Some("0"),

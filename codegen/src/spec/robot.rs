@@ -115,24 +115,16 @@ pub(super) struct RawJoint {
     pub actuator: Option<At<String>>,
 }
 
-/// A spring has a stiffness and an angle at which it rests; a joint without either has none.
+/// A spring that pulls says where it rests; one that is said to rest somewhere need not pull.
 fn spring(view: &View<'_>, sink: &mut Sink) -> Option<Spring> {
-    let keys = ["stiffness", "rest_angle"];
-    let [stiffness, rest] = match keys.map(|key| view.has(key)) {
-        [false, false] => return Some(Spring::default()),
-        [true, true] => keys.map(|key| view.number(key, sink).map(|x| x.value)),
-        [has_stiffness, _] => {
-            let (given, missing) = if has_stiffness { (keys[0], keys[1]) } else { (keys[1], keys[0]) };
-            let title = format!("`{}` without `{missing}`", view.join(given));
-            let help = if has_stiffness {
-                "write rest_angle = the joint's angle at which the spring does nothing, in rad"
-            } else {
-                "write stiffness = the spring's torque per angle, in N·m/rad; 0 asks what a little of it would be worth"
-            };
-            sink.report(Code::MissingKey, title, &view.key_span(given), "a spring has both", help);
-            return None;
-        }
-    };
+    let mut number = |key| if view.has(key) { view.number(key, sink).map(|x| x.value) } else { Some(0.0) };
+    let (stiffness, rest) = (number("stiffness"), number("rest_angle"));
+    if view.has("stiffness") && !view.has("rest_angle") {
+        let title = format!("`{}` without `rest_angle`", view.join("stiffness"));
+        let help = "write rest_angle = the joint's angle at which the spring does nothing, in rad";
+        sink.report(Code::MissingKey, title, &view.key_span("stiffness"), "a spring rests somewhere", help);
+        return None;
+    }
     Some(Spring { stiffness: stiffness?, rest: rest? })
 }
 
