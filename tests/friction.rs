@@ -1,8 +1,11 @@
 //! Joints that rub: what motors overcome costs, limits and is told, and moves nothing.
 
+#[path = "gaits/energy.rs"]
+mod energy;
 #[path = "friction/robot.rs"]
 mod robot;
 
+use energy::energy;
 use piaffe::Robot;
 use piaffe::altered::Altered;
 use piaffe::cycle::{Cycle, theta};
@@ -82,13 +85,7 @@ fn energy_grows_by_the_motors_work_less_heat() {
         let walk = Walk::even(&gait, &motion, intervals).unwrap();
         for (k, phase) in walk.phases.iter().enumerate() {
             let moments: Vec<&Moment> = walk.moments.iter().filter(|m| m.phase == k).collect();
-            let energy = |m: &Moment| {
-                let x = [&m.platform[0][..d.positions()], &m.q].concat();
-                let xd = [&m.platform[1][..d.positions()], &m.qd].concat();
-                let mut out = [0.0; 2];
-                gait.energy(&x, &xd, &mut out);
-                out[0] + out[1]
-            };
+            let energy = |m: &Moment| energy(&gait, m);
             let step = phase.duration / intervals as f64;
             let power = |m: &Moment| m.torque.iter().zip(&m.qd).map(|(torque, rate)| torque * rate).sum::<f64>();
             // Trapezes: the kinks of c |q̇| leave errors of second order.

@@ -1,5 +1,9 @@
 //! Springs beside motors: what they give the motors need not, what they take they give back, and a robot's file says which.
 
+#[path = "gaits/energy.rs"]
+mod energy;
+
+use energy::energy;
 use piaffe::Robot;
 use piaffe::examine::Examination;
 use piaffe::four_legs::Lift;
@@ -83,13 +87,7 @@ fn energy_of_robot_and_springs_grows_by_the_motors_work() {
         assert!(held[1] - held[0] > 1e-2 * unit, "{name}: {held:?} of {unit}");
         for (k, phase) in walk.phases.iter().enumerate() {
             let moments: Vec<&Moment> = walk.moments.iter().filter(|m| m.phase == k).collect();
-            let energy = |m: &Moment| {
-                let x = [&m.platform[0][..d.positions()], &m.q].concat();
-                let xd = [&m.platform[1][..d.positions()], &m.qd].concat();
-                let mut out = [0.0; 2];
-                gait.energy(&x, &xd, &mut out);
-                out[0] + out[1] + stored(&gait, m)
-            };
+            let energy = |m: &Moment| energy(&gait, m) + stored(&gait, m);
             let step = phase.duration / intervals as f64;
             let power = |m: &Moment| m.torque.iter().zip(&m.qd).map(|(torque, rate)| torque * rate).sum::<f64>();
             // Simpson's rule.

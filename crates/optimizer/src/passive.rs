@@ -26,8 +26,8 @@ pub struct Passive<T = f64> {
 impl Passive {
     /// Of each joint that has something of it.
     pub fn all(d: &Description) -> Vec<Option<Passive>> {
-        let acts = |j: &usize| Passive::acts(&d.joints[*j]);
-        (0..d.joints()).map(|j| acts(&j).then(|| Passive::read(d, j, |number| number(d)))).collect()
+        let joints = d.joints.iter().enumerate();
+        joints.map(|(j, joint)| Passive::acts(joint).then(|| Passive::read(d, j, |number| number(d)))).collect()
     }
 
     /// Whether a joint has something of it.

@@ -15,7 +15,7 @@ use piaffe_model::motion::{Costs, Course, Criterion, Motion};
 use piaffe_model::{Description, Gait, Specification};
 use piaffe_sqp as sqp;
 use piaffe_verify::certificate::Certificate;
-use piaffe_verify::{Finding, JointPeak, VerifyError, verify};
+use piaffe_verify::{Finding, JointPeak, VerifyError};
 use serde::{Deserialize, Serialize};
 
 /// Characters of a speed in a file's name that has four decimals.
@@ -315,6 +315,7 @@ impl GaitResult {
         self.local_optima.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         if self.cost.is_none_or(|known| cost < known) {
             candidate.seconds = self.seconds;
+            candidate.cheaper_motion = self.cheaper_motion.filter(|less| *less < cost);
             candidate.local_optima = std::mem::take(&mut self.local_optima);
             *self = candidate;
         }
@@ -390,7 +391,7 @@ impl GaitResult {
 
     /// What the motion of `local` costs, if it keeps to all limits by a receipt.
     fn receipt_of(&self, gait: &dyn Gait, local: &Local) -> Option<f64> {
-        let receipt = verify(gait.description(), &local.motion, self.speed, verdict::GRID).ok()?;
+        let receipt = verdict::receipt(gait, self.speed, &local.motion).ok()?;
         let holds = receipt.max_violation <= verdict::VIOLATION && receipt.cycle_error <= verdict::CYCLE_ERROR;
         holds.then(|| receipt.costs.of(self.criterion))
     }

@@ -57,13 +57,7 @@ impl Verdict {
         speed: f64,
         motion: &Motion,
     ) -> Result<Verdict, VerifyError> {
-        let mut receipt = verify(gait.description(), motion, speed, GRID)?;
-        if applies(gait.description())
-            && let Ok(legs) = RealLegs::new(gait, motion)
-        {
-            // What was minimized is the real joints' cost, which the whole robot's equations tell.
-            receipt.costs = legs.costs.proportional;
-        }
+        let receipt = receipt(gait, speed, motion)?;
         let optimality = optimality(gait, criterion, speed, motion).ok();
         let mut verdict = Verdict { receipt, optimality, certificate: None, reasons: Vec::new() };
         verdict.must("the largest violation", verdict.receipt.max_violation, VIOLATION);
@@ -86,6 +80,21 @@ impl Verdict {
             self.reasons.push(format!("{what} is {value:.1e}, not {limit:.0e} or less"));
         }
     }
+}
+
+/// The receipt of a motion, with the costs that are minimized.
+///
+/// # Errors
+/// As [`Verdict::new`].
+pub fn receipt(gait: &dyn Gait, speed: f64, motion: &Motion) -> Result<Receipt, VerifyError> {
+    let mut receipt = verify(gait.description(), motion, speed, GRID)?;
+    if applies(gait.description())
+        && let Ok(legs) = RealLegs::new(gait, motion)
+    {
+        // What was minimized is the real joints' cost, which the whole robot's equations tell.
+        receipt.costs = legs.costs.proportional;
+    }
+    Ok(receipt)
 }
 
 /// What a certificate proves broken, in words.

@@ -184,7 +184,8 @@ pub fn search_watched(
     }
     // Where descents got lost may be cheaper than where others arrived: then there is a better optimum, or none that smooth steps find.
     let Some(best) = found.optima.first().map(|best| best.local.costs.of(criterion)) else { return found };
-    let cheaper = |local: &Local| local.costs.of(criterion) < (1.0 - CHEAPER) * best;
+    let cheaper_than = |best: f64| move |local: &Local| local.costs.of(criterion) < (1.0 - CHEAPER) * best;
+    let cheaper = cheaper_than(best);
     let mut lost: Vec<&Local> = ends.iter().map(|end| &end.local).filter(|local| !local.status.is_optimal()).collect();
     lost.retain(|local| local.keeps_to_limits() && cheaper(local));
     lost.sort_by(|a, b| cheapest(a, b));
@@ -194,8 +195,7 @@ pub fn search_watched(
     ends.par_extend(repaired.par_iter().map(|local| follow(&local.theta)));
     let mut found = collect(task, &ends);
     let best = found.optima.first().map_or(best, |best| best.local.costs.of(criterion));
-    let still = |local: &Local| local.costs.of(criterion) < (1.0 - CHEAPER) * best;
-    found.motion = repaired.into_iter().filter(still).min_by(cheapest);
+    found.motion = repaired.into_iter().filter(cheaper_than(best)).min_by(cheapest);
     found
 }
 

@@ -227,10 +227,9 @@ impl<'a> Slopes<'a> {
             for (quantity, weight) in weights {
                 lagrangian += y[*quantity].scale(*weight);
                 // A motor also overcomes springs and viscous friction, which are no quantities.
-                if let Some(joint) = numbers.joints.get(*quantity) {
+                if let Some(passive) = limits.joints.get(*quantity).and_then(|joint| joint.passive) {
                     let [angle, rate] = [&state.q, &state.qd].map(|list| Number::constant(list[*quantity].value()));
-                    let passive = joint.stiffness * (angle - joint.rest) + joint.damping * rate;
-                    lagrangian += passive.scale(*weight);
+                    lagrangian += passive.smooth(angle, rate).scale(*weight);
                 }
             }
             for (constraint, multiplier) in rows {
